@@ -1,0 +1,41 @@
+# Compile options, and one function per kind of target: a module is a folder of sources, its
+# dependencies are the arrows of the architecture diagram.
+
+add_library(prt_options INTERFACE)
+target_compile_options(prt_options INTERFACE -Wall -Wextra -Wshadow -Werror -Wno-psabi)
+target_include_directories(prt_options INTERFACE ${CMAKE_SOURCE_DIR}/lib ${CMAKE_SOURCE_DIR})
+target_compile_definitions(prt_options INTERFACE PRTKIT_VERSION="${PROJECT_VERSION}")
+if(PRTKIT_SANITIZE)
+  target_compile_options(prt_options INTERFACE -fsanitize=address,undefined
+                                               -fno-sanitize-recover=undefined
+                                               -fno-omit-frame-pointer)
+  target_link_options(prt_options INTERFACE -fsanitize=address,undefined)
+endif()
+if(PRTKIT_FUZZ)
+  target_compile_options(prt_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+                                               -fno-sanitize-recover=undefined)
+  target_link_options(prt_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# prt_module(NAME DEPENDS public… PRIVATE private…): static library prt_NAME from every .cpp here.
+function(prt_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp *.h)
+  add_library(prt_${name} STATIC ${sources})
+  set_target_properties(prt_${name} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(prt_${name} PUBLIC prt_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE})
+endfunction()
+
+# prt_test(NAME DEPENDS libraries…): test_NAME from every *_test.cpp of tests/NAME, one CTest entry.
+# Tests run in the source folder's tests/ so that they name their data relative to it.
+function(prt_test name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${name}/*.cpp ${name}/*.h)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(test_${name} ${sources})
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main)
+  target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+  add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/tests)
+endfunction()

@@ -1,0 +1,84 @@
+#include "cli/tool.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+
+#include "core/cpu.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+
+namespace prt::cli {
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+void apply(const CommonOptions& options) {
+  set_thread_count(options.threads);
+  set_progress_policy(options.progress, options.quiet);
+  log::set_level(options.quiet     ? log::Level::error
+                 : options.verbose ? log::Level::debug
+                                   : log::Level::info);
+}
+
+}  // namespace
+
+Tool::Tool(std::string name, std::string description, std::string example)
+    : name_(std::move(name)), app_(std::move(description), name_) {
+  app_.footer("Example:\n  " + example);
+  app_.get_formatter()->column_width(34);
+  app_.option_defaults()->always_capture_default();
+  app_.set_version_flag("--version", [this] {
+    return fmt::format("{} {} ({})", name_, PRTKIT_VERSION, simd_level_name(simd_level()));
+  });
+  const char* group = "Common";
+  app_.add_option("--threads", common_.threads, "Threads; 0: all")
+      ->check(CLI::Range(0, 1024))
+      ->group(group);
+  app_.add_option("--seed", common_.seed, "Seed of everything random")->group(group);
+  app_.add_option("--report", common_.report, "Write a JSON report of the run")->group(group);
+  app_.add_flag("--no-clobber", common_.no_clobber, "Fail when the output exists")->group(group);
+  app_.add_flag("--progress", common_.progress, "Show progress off a terminal too")->group(group);
+  app_.add_flag("-v,--verbose", common_.verbose, "Say more")->group(group);
+  app_.add_flag("-q,--quiet", common_.quiet, "Say nothing but errors")->group(group);
+}
+
+void Tool::record_options(Report& report) const {
+  for (const CLI::Option* option : app_.get_options()) {
+    const std::string& name = option->get_name(false, false);
+    if (option->count() == 0 || name == "--help" || name == "--version") continue;
+    const auto values = option->as<std::vector<std::string>>();
+    report.json()["options"][name] = fmt::format("{}", fmt::join(values, ","));
+  }
+}
+
+int Tool::run(int argc, char** argv, const std::function<void(Report&)>& work) {
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app_.exit(error) == 0 ? 0 : kWrongUsage;
+  }
+  try {
+    apply(common_);
+    Report report(name_);
+    record_options(report);
+    work(report);
+    if (!common_.report.empty()) report.write(common_.report, common_.no_clobber);
+    return 0;
+  } catch (const Error& error) {
+    fmt::print(stderr, "{}: {}\n", name_, error.what());
+    return error.exit_status();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "{}: out of memory\n", name_);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", name_, error.what());
+  }
+  return kFailed;
+}
+
+}  // namespace prt::cli

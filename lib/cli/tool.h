@@ -1,0 +1,47 @@
+// What every tool's command line shares (docs/architecture.md §5): common options, help, version,
+// exit statuses, the run report.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/report.h"
+
+namespace prt::cli {
+
+/// Options that every tool takes.
+struct CommonOptions {
+  int threads = 0;  ///< 0: all processors
+  std::uint64_t seed = 1;
+  bool no_clobber = false;
+  bool verbose = false;
+  bool quiet = false;
+  bool progress = false;         ///< force progress off a terminal
+  std::filesystem::path report;  ///< empty: none
+};
+
+class Tool {
+ public:
+  /// `example` is one real command, shown at the end of --help.
+  Tool(std::string name, std::string description, std::string example);
+
+  CLI::App& app() { return app_; }
+  const CommonOptions& common() const { return common_; }
+
+  /// Parses, runs `work`, writes the report, and returns the exit status: 0 done, 1 failed,
+  /// 2 wrong usage, 3 bad input file. The work throws prt::Error.
+  int run(int argc, char** argv, const std::function<void(Report&)>& work);
+
+ private:
+  void record_options(Report& report) const;
+
+  std::string name_;
+  CLI::App app_;
+  CommonOptions common_;
+};
+
+}  // namespace prt::cli

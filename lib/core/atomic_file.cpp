@@ -1,0 +1,148 @@
+#include "core/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+#include "core/error.h"
+
+namespace prt {
+
+namespace {
+
+// Paths that a signal handler has to unlink: fixed storage, since a handler may not allocate.
+constexpr std::size_t kSlotCount = 16;
+constexpr std::size_t kPathLimit = 4096;
+struct Slot {
+  std::atomic<bool> used{false};
+  std::atomic<bool> ready{false};
+  std::array<char, kPathLimit> path{};
+};
+std::array<Slot, kSlotCount> slots;
+
+void remove_all() {
+  for (Slot& slot : slots) {
+    if (slot.ready.load()) unlink(slot.path.data());
+  }
+}
+
+void on_signal(int signal) {
+  remove_all();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void install_handlers() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    std::atexit(remove_all);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) {
+      struct sigaction current {};
+      if (signal == SIGXFSZ) {  // a size limit then shows as EFBIG from write, with our message
+        std::signal(signal, SIG_IGN);
+      } else if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_DFL) {
+        struct sigaction action {};
+        action.sa_handler = on_signal;
+        sigaction(signal, &action, nullptr);
+      }
+    }
+  });
+}
+
+int acquire_slot(const std::string& path) {
+  if (path.size() >= kPathLimit) return -1;
+  for (std::size_t i = 0; i < kSlotCount; ++i) {
+    bool expected = false;
+    if (slots[i].used.compare_exchange_strong(expected, true)) {
+      std::memcpy(slots[i].path.data(), path.c_str(), path.size() + 1);
+      slots[i].ready = true;
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+void release_slot(int slot) {
+  if (slot < 0) return;
+  slots[static_cast<std::size_t>(slot)].ready = false;
+  slots[static_cast<std::size_t>(slot)].used = false;
+}
+
+[[noreturn]] void throw_system(const std::string& what, const std::filesystem::path& path) {
+  throw_failed(what + ": " + std::strerror(errno), {.file = path.string()});
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path, bool no_clobber)
+    : path_(std::move(path)), no_clobber_(no_clobber) {
+  check_output(path_, no_clobber_);
+  install_handlers();
+  const std::string extension = path_.extension().string();
+  std::string pattern = (path_.parent_path() / ("." + path_.stem().string() + ".XXXXXX")).string();
+  pattern += extension;
+  descriptor_ = mkostemps(pattern.data(), static_cast<int>(extension.size()), O_CLOEXEC);
+  if (descriptor_ < 0) throw_system("cannot create the output", path_);
+  temporary_ = pattern;
+  slot_ = acquire_slot(pattern);
+  const mode_t mask = umask(0);
+  umask(mask);
+  fchmod(descriptor_, 0666 & ~mask);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+  release_slot(slot_);
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      throw_system("writing failed", path_);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+void AtomicFile::commit() {
+  // A library may have replaced the file behind our descriptor: sync what the path names now.
+  const int current = open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (current < 0) throw_system("the temporary output is gone", path_);
+  const bool synced = fsync(current) == 0;
+  close(current);
+  if (!synced) throw_system("writing failed", path_);
+  if (no_clobber_) {
+    if (link(temporary_.c_str(), path_.c_str()) != 0) throw_system("not overwriting", path_);
+    return;  // the destructor removes the temporary name
+  }
+  if (rename(temporary_.c_str(), path_.c_str()) != 0) throw_system("cannot rename", path_);
+  temporary_.clear();
+}
+
+void check_output(const std::filesystem::path& path, bool no_clobber) {
+  struct stat status {};
+  if (no_clobber && lstat(path.c_str(), &status) == 0) {
+    throw_failed("exists, and --no-clobber is set", {.file = path.string()});
+  }
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) {
+    throw_failed("output folder does not exist",
+                 {.file = path.string(), .advice = "Create " + folder.string() + " first."});
+  }
+}
+
+}  // namespace prt

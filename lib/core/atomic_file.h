@@ -1,0 +1,44 @@
+// Output that is either complete or absent: written to a temporary file in the same folder, synced,
+// renamed. An exception, an exit, SIGINT, SIGTERM or SIGHUP leaves no temporary file behind and an
+// earlier output untouched.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace prt {
+
+class AtomicFile {
+ public:
+  /// Creates the temporary file beside `path`. Throws Error (failed) when the folder is missing or
+  /// not writable, or when `no_clobber` is set and `path` exists.
+  explicit AtomicFile(std::filesystem::path path, bool no_clobber = false);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write, for writers that want a path (it keeps the extension of the final one).
+  const std::filesystem::path& temporary_path() const { return temporary_; }
+
+  /// Writes through our own descriptor. Throws Error (failed) with the system's reason.
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+
+  /// Syncs and renames. Throws Error (failed) when the disk is full.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+  int slot_ = -1;  // in the table that the signal handler removes
+  bool no_clobber_;
+};
+
+/// Throws Error (failed) when `path` cannot become an output: its folder is missing, or it exists
+/// and no_clobber is set. Tools ask before the work, not after.
+void check_output(const std::filesystem::path& path, bool no_clobber);
+
+}  // namespace prt

@@ -1,0 +1,15 @@
+// Which vector instructions this processor has. Kernels that pay for it are compiled for several
+// levels (one always-inline body, one wrapper per level with a target attribute) and chosen by
+// this.
+#pragma once
+
+namespace prt {
+
+enum class SimdLevel { baseline, avx2, avx512 };
+
+/// The best level of this processor, or the lower one that the environment variable PRTKIT_SIMD
+/// (baseline, avx2, avx512) asks for. Constant for the life of the process.
+SimdLevel simd_level();
+const char* simd_level_name(SimdLevel level);
+
+}  // namespace prt

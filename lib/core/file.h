@@ -1,0 +1,20 @@
+// Whole files into memory, with a size limit, for readers that check before they parse.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace prt {
+
+/// Default of the --max-input-bytes options.
+constexpr std::size_t kMaxInputBytes = std::size_t{8} << 30;
+
+/// Bytes of a regular file. Throws Error (bad_input) when it is missing, a folder, or larger than
+/// `limit` bytes.
+std::vector<std::byte> read_file(const std::filesystem::path& path,
+                                 std::size_t limit = kMaxInputBytes);
+std::string read_text_file(const std::filesystem::path& path, std::size_t limit = kMaxInputBytes);
+
+}  // namespace prt

@@ -1,0 +1,57 @@
+// The run report of --report FILE.json: a JSON object that every part of a tool adds its figures
+// to. Common keys: tool, version, options, inputs, outputs, stages (name, seconds), seconds,
+// peak_memory_bytes, threads, simd.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace prt {
+
+class Report {
+ public:
+  explicit Report(std::string tool);
+
+  /// The object itself, for figures of the tool's own.
+  nlohmann::ordered_json& json() { return json_; }
+
+  /// Adds path, bytes and content hash under "inputs" or "outputs".
+  void add_input(const std::filesystem::path& path);
+  void add_output(const std::filesystem::path& path);
+
+  /// Adds a stage that ran for `seconds`.
+  void add_stage(const std::string& name, double seconds);
+
+  /// Fills in seconds, peak memory and threads, and writes the file (atomically).
+  void write(const std::filesystem::path& path, bool no_clobber);
+
+ private:
+  nlohmann::ordered_json json_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Times a scope as one stage of a report.
+class StageTimer {
+ public:
+  StageTimer(Report& report, std::string name)
+      : report_(report), name_(std::move(name)), start_(std::chrono::steady_clock::now()) {}
+  ~StageTimer() { report_.add_stage(name_, seconds()); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  Report& report_;
+  std::string name_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Peak resident memory of this process so far, in bytes.
+std::size_t peak_memory_bytes();
+
+}  // namespace prt

@@ -1,0 +1,54 @@
+// A glTF 2.0 file in memory. Everything prtkit does not know (extensions, extras, cameras,
+// animations, …) survives loading and saving.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "gltf/precomputed_transfer.h"
+#include "mesh/scene.h"
+
+namespace prt::gltf {
+
+/// What a hostile file may not exceed.
+struct Limits {
+  std::size_t max_file_bytes = std::size_t{4} << 30;
+  std::size_t max_image_pixels = image::kMaxPixels;
+  std::size_t max_node_depth = 256;
+};
+
+class Document {
+ public:
+  /// Reads .glb or .gltf; buffers and images are loaded from data URIs and from files beside it (no
+  /// absolute path, no "..", no scheme). Throws Error (bad_input).
+  static Document load(const std::filesystem::path& path, const Limits& limits = {});
+
+  /// A new document with one node and mesh for each primitive of the scene.
+  static Document from_scene(const mesh::Scene& scene);
+
+  Document(Document&&) noexcept;
+  Document& operator=(Document&&) noexcept;
+  ~Document();
+
+  /// All mesh primitives of the default scene in world space, images decoded. A mesh used by two
+  /// nodes, or a primitive that is no indexed triangle list with normals, is an Error that advises
+  /// prt-import.
+  mesh::Scene scene() const;
+
+  /// PRTKIT_precomputed_transfer, if the file has it. Checks every accessor and range.
+  std::optional<PrecomputedTransfer> precomputed_transfer() const;
+  /// Adds or replaces it.
+  void set_precomputed_transfer(const PrecomputedTransfer& transfer);
+
+  /// Writes .glb, everything embedded, atomically.
+  void save_glb(const std::filesystem::path& path, bool no_clobber = false) const;
+
+ private:
+  struct State;
+  explicit Document(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prt::gltf

@@ -1,0 +1,56 @@
+// A scene as baking and drawing see it: every mesh primitive of a file in world space, with what
+// diffuse shading needs of its material. Vertices of all primitives are also numbered through, in
+// order: the transfer signal and its compression use that numbering.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "image/image.h"
+#include "mesh/triangle_mesh.h"
+
+namespace prt::mesh {
+
+enum class Wrap { repeat, clamp, mirror };
+
+/// A Lambertian surface. prtkit's diffuse transfer ignores metalness.
+struct Material {
+  std::string name;
+  Vec4 base_color{1.0f, 1.0f, 1.0f, 1.0f};  ///< linear factor
+  int base_color_image = -1;                ///< index into Scene::images, -1: none
+  Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
+  bool double_sided = false;
+};
+
+struct Primitive {
+  std::string name;                         ///< of the node or mesh, for messages and reports
+  TriangleMesh mesh;                        ///< world space; normals always present
+  int material = -1;                        ///< index into Scene::materials, -1: white
+  int mesh_index = 0, primitive_index = 0;  ///< where it stands in the glTF file
+};
+
+struct Scene {
+  std::vector<Primitive> primitives;
+  std::vector<Material> materials;
+  std::vector<image::Image> images;  ///< linear RGB(A) base colour textures
+
+  std::size_t vertex_count() const;
+  std::size_t triangle_count() const;
+  /// Number of the first vertex of each primitive, and the total at the end.
+  std::vector<std::size_t> vertex_offsets() const;
+};
+
+/// Diffuse albedo (linear RGB, clamped to [0, 1]): factor × vertex colour × texture, bilinear.
+Vec3 albedo_at(const Scene& scene, const Primitive& primitive, const Vec2& texcoord,
+               const Vec4& color);
+Vec3 albedo_at_vertex(const Scene& scene, const Primitive& primitive, std::size_t vertex);
+/// At the point of a triangle with barycentric weights (1-u-v, u, v).
+Vec3 albedo_at_point(const Scene& scene, const Primitive& primitive, std::size_t triangle, float u,
+                     float v);
+
+/// Content hash of positions, normals and indices of all primitives: what a transfer belongs to.
+std::string mesh_hash(const Scene& scene);
+
+}  // namespace prt::mesh

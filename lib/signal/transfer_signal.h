@@ -1,0 +1,47 @@
+// The per-vertex transfer signal, and its file: what prt-transfer writes and prt-compress reads.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mesh/scene.h"
+
+namespace prt::signal {
+
+/// Transfer of all vertices of a scene (numbered through). One vertex is one row of
+/// `dimension()` floats, ordered [channel][exit row][source coefficient]; diffuse transfer has one
+/// exit row. Maps source radiance coefficients (world frame) to exit radiance, albedo/pi included.
+struct TransferSignal {
+  int band_count = 0;     ///< of the source light
+  int row_count = 1;      ///< exit coefficients; 1 is diffuse
+  int channel_count = 1;  ///< 1, or 3 (R, G, B)
+  std::string brdf = "lambert";
+  std::uint64_t seed = 0;
+  int ray_count = 0;
+  int bounce_count = 0;
+  std::string tool_version;
+  std::string mesh_hash;  ///< mesh::mesh_hash of the scene it was computed for
+
+  struct Block {
+    std::string name;  ///< of the primitive
+    std::size_t vertex_count;
+  };
+  std::vector<Block> blocks;  ///< one a primitive, in scene order
+  std::vector<float> values;  ///< vertex_count() × dimension()
+
+  int dimension() const { return channel_count * row_count * band_count * band_count; }
+  std::size_t vertex_count() const;
+};
+
+/// Writes and reads the OpenEXR form (docs/transfer-file.md). Reading throws Error (bad_input).
+void write_transfer(const std::filesystem::path& path, const TransferSignal& signal,
+                    bool no_clobber = false);
+TransferSignal read_transfer(const std::filesystem::path& path);
+
+/// Throws Error (bad_input) when the signal was computed for another mesh.
+void check_belongs_to(const TransferSignal& signal, const mesh::Scene& scene,
+                      const std::filesystem::path& signal_path);
+
+}  // namespace prt::signal
