@@ -1,0 +1,121 @@
+#include "core/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.h"
+#include "core/file.h"
+
+namespace prt {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "prtkit-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::size_t entry_count() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(AtomicFileTest, AppearsOnlyOnCommit) {
+  const fs::path path = folder_ / "a.txt";
+  {
+    AtomicFile file(path);
+    file.write("hello");
+    EXPECT_FALSE(fs::exists(path));
+    EXPECT_EQ(file.temporary_path().extension(), ".txt");
+    file.commit();
+  }
+  EXPECT_EQ(read_text_file(path), "hello");
+  EXPECT_EQ(entry_count(), 1u);
+}
+
+TEST_F(AtomicFileTest, AbandonedWriteKeepsTheEarlierOutput) {
+  const fs::path path = folder_ / "a.txt";
+  std::ofstream(path) << "old";
+  { AtomicFile(path).write("half"); }
+  EXPECT_EQ(read_text_file(path), "old");
+  EXPECT_EQ(entry_count(), 1u);
+}
+
+TEST_F(AtomicFileTest, NoClobberRefusesAnExistingFile) {
+  const fs::path path = folder_ / "a.txt";
+  std::ofstream(path) << "old";
+  EXPECT_THROW(AtomicFile(path, true), Error);
+  AtomicFile late(folder_ / "b.txt", true);
+  late.write("mine");
+  std::ofstream(folder_ / "b.txt") << "theirs";  // appears while we write
+  EXPECT_THROW(late.commit(), Error);
+  EXPECT_EQ(read_text_file(folder_ / "b.txt"), "theirs");
+}
+
+TEST_F(AtomicFileTest, MissingFolderIsAnErrorThatNamesIt) {
+  try {
+    AtomicFile file(folder_ / "missing" / "a.txt");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_status(), 1);
+    EXPECT_NE(std::string(error.what()).find("missing"), std::string::npos);
+  }
+}
+
+TEST_F(AtomicFileTest, SignalRemovesTheTemporaryFile) {
+  const fs::path path = folder_ / "a.txt";
+  std::ofstream(path) << "old";
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      AtomicFile file(path);
+      file.write("half");
+      raise(signal);
+      _exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    EXPECT_EQ(entry_count(), 1u);
+    EXPECT_EQ(read_text_file(path), "old");
+  }
+}
+
+TEST_F(AtomicFileTest, FullDiskIsAnErrorAndLeavesNothing) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const rlimit limit{4096, 4096};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    int result = 1;
+    try {
+      AtomicFile file(folder_ / "a.txt");
+      file.write(std::string(10000, 'x'));
+    } catch (const Error& error) {
+      result = error.exit_status() == 1 ? 0 : 2;
+    }
+    _exit(result);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(entry_count(), 0u);
+}
+
+}  // namespace
+}  // namespace prt
