@@ -1,0 +1,136 @@
+"""The whole pipeline with the real tools: documented commands and reports, the same bytes for any
+number of threads, files that other programs accept."""
+
+import hashlib
+import math
+import subprocess
+import unittest
+
+from toolbox import BIN, BUNNY, SOURCE, WORLD, ToolTest
+
+BOX = SOURCE / "data/colored_box.obj"
+TOOLS = ("prt-import", "prt-light", "prt-transfer", "prt-compress", "prt-render", "prt-view",
+         "prt-inspect")
+
+
+class Pipeline(ToolTest):
+    def bake(self, source, *, options=(), edge=0.1, **counts):
+        """import → transfer → compress → light; returns the paths."""
+        clusters, components = counts.get("clusters", 16), counts.get("components", 4)
+        paths = {name: self.folder / f"a.{name}" for name in
+                 ("glb", "transfer.exr", "prt.glb", "json", "i", "t", "c")}
+        self.done("prt-import", source, "-o", paths["glb"], "--max-edge", edge, "--crease-angle",
+                  30, "--report", paths["i"], *options)
+        self.done("prt-transfer", paths["glb"], "-o", paths["transfer.exr"], "--bands", 4,
+                  "--rays", 512, "--bounces", 2, "--report", paths["t"], *options)
+        self.done("prt-compress", paths["glb"], paths["transfer.exr"], "-o", paths["prt.glb"],
+                  "--clusters", clusters, "--components", components, "--method", "static",
+                  "--report", paths["c"], *options)
+        self.done("prt-light", WORLD / "courtyard.exr", "-o", paths["json"], "--bands", 4,
+                  *options)
+        return paths
+
+    def test_reports_have_the_documented_keys(self):
+        paths = self.bake(BOX)
+        common = {"tool", "version", "options", "inputs", "outputs", "stages", "seconds",
+                  "peak_memory_bytes", "threads"}
+        transfer, compress = self.load(paths["t"]), self.load(paths["c"])
+        imported = self.load(paths["i"])
+        for report in (imported, transfer, compress):
+            self.assertLessEqual(common, report.keys())
+            self.assertGreater(len(report["stages"]), 1)
+            self.assertGreater(len(report["inputs"]), 0)
+            for entry in report["outputs"]:
+                self.assertGreater(entry["bytes"], 0)
+        self.assertGreater(imported["vertex_count"], 500)
+        self.assertGreater(transfer["rays_cast"], 512 * imported["vertex_count"] / 2)
+        self.assertGreater(transfer["rays_per_second"], 0)
+        self.assertGreaterEqual(transfer["buried_vertex_count"], 0)
+        self.assertEqual(compress["cluster_count"], 16)
+        self.assertEqual(compress["component_count"], 4)
+        self.assertLess(math.sqrt(compress["squared_error"] / compress["signal_energy"]), 0.1)
+
+    def test_same_bytes_for_any_thread_count_and_twice(self):
+        digests = []
+        for threads in (1, 2, 2):
+            paths = self.bake(BOX, options=("--threads", threads))
+            digests.append([hashlib.sha256(paths[name].read_bytes()).hexdigest()
+                            for name in ("glb", "transfer.exr", "prt.glb", "json")])
+        self.assertEqual(digests[0], digests[1])
+        self.assertEqual(digests[1], digests[2])
+
+    def test_other_programs_accept_the_files(self):
+        paths = self.bake(BOX)
+        for script in ("validate.mjs", "load_three.mjs"):
+            result = subprocess.run(
+                ["node", SOURCE / "tests/gltf" / script, paths["glb"], paths["prt.glb"]],
+                capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("_prt_cluster", result.stdout.lower())
+
+    def test_inspect_finds_the_baked_file_valid(self):
+        paths = self.bake(BOX)
+        for name in ("glb", "prt.glb", "transfer.exr", "json"):
+            result = self.done("prt-inspect", paths[name], "--json")
+            self.assertTrue(result.stdout.strip().startswith("{"))
+        self.done("prt-inspect", paths["prt.glb"])
+
+    def test_documented_render_commands(self):
+        paths = self.bake(BOX)
+        size = ("--size", "64x48")
+        png, u, r = (self.folder / name for name in ("a.png", "u.exr", "r.exr"))
+        light = ("--light", paths["json"])
+        self.done("prt-render", paths["prt.glb"], *light, "-o", png, *size)
+        self.done("prt-render", paths["prt.glb"], "--transfer", paths["transfer.exr"], *light, "-o",
+                  u, *size)
+        self.done("prt-render", paths["glb"], "--reference", "--bounces", 2, *light, "--samples",
+                  16, "-o", r, *size)
+        self.done("prt-render", paths["prt.glb"], *light, "-o", png, *size, "--draw", "clusters",
+                  "--eye", "0,0.5,3", "--target", "0,0.5,0", "--fov", 40)
+
+    def test_unknown_light_bands_do_not_matter(self):
+        """A light of more or fewer bands than the transfer is cut or padded."""
+        paths = self.bake(BOX)
+        for bands in (2, 8):
+            light = self.folder / "other.json"
+            self.done("prt-light", WORLD / "studio.exr", "-o", light, "--bands", bands)
+            self.done("prt-render", paths["prt.glb"], "--light", light, "-o",
+                      self.folder / "x.png", "--size", "32x32")
+
+
+class CommandLine(ToolTest):
+    def test_every_tool_has_help_version_and_an_example(self):
+        for tool in TOOLS:
+            with self.subTest(tool):
+                text = self.done(tool, "--help").stdout
+                for word in ("--threads", "--seed", "--report", "--no-clobber", "Example:", tool):
+                    self.assertIn(word, text)
+                self.assertRegex(self.done(tool, "--version").stdout, tool + r" \d+\.\d+\.\d+")
+
+    def test_results_go_to_standard_output_only(self):
+        for tool in ("prt-import",):
+            result = self.done(tool, BUNNY, "-o", self.folder / "b.glb")
+            self.assertEqual(result.stdout, "")
+
+    def test_quiet_says_nothing(self):
+        result = self.done("prt-import", BUNNY, "-o", self.folder / "b.glb", "-q")
+        self.assertEqual(result.stdout + result.stderr, "")
+
+
+class View(ToolTest):
+    def test_screenshot_under_a_virtual_display(self):
+        glb, transfer, baked = (self.folder / n for n in ("a.glb", "a.transfer.exr", "a.prt.glb"))
+        shot = self.folder / "shot.png"
+        self.done("prt-import", BOX, "-o", glb, "--max-edge", 0.1)
+        self.done("prt-transfer", glb, "-o", transfer, "--rays", 64)
+        self.done("prt-compress", glb, transfer, "-o", baked, "--clusters", 8)
+        result = subprocess.run(
+            ["xvfb-run", "-a", BIN / "prt-view", baked, "--light", WORLD / "city.exr",
+             "--screenshot", shot], capture_output=True, text=True, timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(shot.read_bytes()[:4], b"\x89PNG")
+        self.assertGreater(shot.stat().st_size, 5000)
+
+
+if __name__ == "__main__":
+    unittest.main()
