@@ -35,10 +35,15 @@ struct TransferSignal {
   std::size_t vertex_count() const;
 };
 
-/// Writes and reads the OpenEXR form (docs/transfer-file.md). Reading throws Error (bad_input).
+/// Writes the OpenEXR form (docs/transfer-file.md), atomically; the same signal gives the same
+/// bytes. Throws Error (failed).
 void write_transfer(const std::filesystem::path& path, const TransferSignal& signal,
                     bool no_clobber = false);
-TransferSignal read_transfer(const std::filesystem::path& path);
+
+/// Reads it back, bit for bit. Throws Error (bad_input), naming the file and what is wrong in it,
+/// before taking memory for values that would need more than `max_bytes`.
+TransferSignal read_transfer(const std::filesystem::path& path,
+                             std::size_t max_bytes = std::size_t{16} << 30);
 
 /// Throws Error (bad_input) when the signal was computed for another mesh.
 void check_belongs_to(const TransferSignal& signal, const mesh::Scene& scene,

@@ -1,0 +1,270 @@
+// The transfer file: round trips, bytes, and files of strangers.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfStringVectorAttribute.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/random.h"
+#include "signal/transfer_signal.h"
+
+namespace prt::signal {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TransferFile : public testing::Test {
+ protected:
+  TransferFile() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("transfer_") + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~TransferFile() override { fs::remove_all(folder_); }
+  fs::path path(const char* name = "a.transfer.exr") const { return folder_ / name; }
+
+  fs::path folder_;
+};
+
+TransferSignal make_signal(int band_count, int row_count, int channel_count,
+                           const std::vector<std::size_t>& vertex_counts) {
+  TransferSignal signal{.band_count = band_count,
+                        .row_count = row_count,
+                        .channel_count = channel_count,
+                        .seed = 0xfedcba9876543210u,
+                        .ray_count = 2048,
+                        .bounce_count = 2,
+                        .tool_version = "0.1.0",
+                        .mesh_hash = "0123456789abcdef0123456789abcdef",
+                        .blocks = {},
+                        .values = {}};
+  for (std::size_t count : vertex_counts) {
+    signal.blocks.push_back({"part " + std::to_string(signal.blocks.size()), count});
+  }
+  Pcg32 random(7);
+  signal.values.resize(signal.vertex_count() * static_cast<std::size_t>(signal.dimension()));
+  for (float& value : signal.values) value = random.uniform() - 0.5f;
+  return signal;
+}
+
+/// The message of the error that reading gives.
+std::string reading_error(const fs::path& path) {
+  try {
+    read_transfer(path);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    EXPECT_EQ(error.details().file, path.string());
+    return error.what();
+  }
+  ADD_FAILURE() << "was read without an error";
+  return {};
+}
+
+void expect_contains(const std::string& message, const std::string& part) {
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+TEST_F(TransferFile, RoundTripsBitForBit) {
+  for (const auto& counts : {std::vector<std::size_t>{1}, {256}, {257, 3, 1000}, {5000}}) {
+    TransferSignal signal = make_signal(3, 2, 3, counts);
+    signal.values.front() = -0.0f;
+    signal.values.back() = std::numeric_limits<float>::denorm_min();
+    write_transfer(path(), signal);
+    const TransferSignal read = read_transfer(path());
+    EXPECT_EQ(read.band_count, 3);
+    EXPECT_EQ(read.row_count, 2);
+    EXPECT_EQ(read.channel_count, 3);
+    EXPECT_EQ(read.brdf, "lambert");
+    EXPECT_EQ(read.seed, signal.seed);
+    EXPECT_EQ(read.ray_count, 2048);
+    EXPECT_EQ(read.bounce_count, 2);
+    EXPECT_EQ(read.tool_version, "0.1.0");
+    EXPECT_EQ(read.mesh_hash, signal.mesh_hash);
+    ASSERT_EQ(read.blocks.size(), counts.size());
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      EXPECT_EQ(read.blocks[i].name, signal.blocks[i].name);
+      EXPECT_EQ(read.blocks[i].vertex_count, counts[i]);
+    }
+    ASSERT_EQ(read.values.size(), signal.values.size());
+    EXPECT_EQ(std::memcmp(read.values.data(), signal.values.data(), 4 * read.values.size()), 0);
+  }
+}
+
+TEST_F(TransferFile, SameSignalGivesSameBytes) {
+  const TransferSignal signal = make_signal(5, 1, 1, {700, 20});
+  write_transfer(path("a.exr"), signal);
+  write_transfer(path("b.exr"), signal);
+  EXPECT_EQ(read_file(path("a.exr")), read_file(path("b.exr")));
+}
+
+// Read with nothing but OpenEXR, as docs/transfer-file.md describes it.
+TEST_F(TransferFile, LiesAsDocumented) {
+  const TransferSignal signal = make_signal(2, 1, 3, {300, 10});
+  write_transfer(path(), signal);
+  Imf::InputFile file(path().c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  ASSERT_EQ(window.max, Imath::V2i(255, 2));
+  std::vector<float> pixels(3 * 256);
+  Imf::FrameBuffer frame;
+  frame.insert("exit000.source003.B",
+               Imf::Slice::Make(Imf::FLOAT, pixels.data(), window, 4, 256 * 4));
+  file.setFrameBuffer(frame);
+  file.readPixels(0, 2);
+  const auto expected = [&](std::size_t vertex) { return signal.values[vertex * 12 + 11]; };
+  EXPECT_EQ(pixels[0], expected(0));
+  EXPECT_EQ(pixels[255], expected(255));
+  EXPECT_EQ(pixels[256 + 43], expected(299));
+  EXPECT_EQ(pixels[256 + 44], 0.0f);
+  EXPECT_EQ(pixels[512 + 9], expected(309));
+}
+
+TEST_F(TransferFile, NamesTheVertexThatIsNotFinite) {
+  TransferSignal signal = make_signal(2, 1, 1, {300, 10});
+  signal.values[(300 + 7) * 4 + 2] = std::nanf("");
+  write_transfer(path(), signal);
+  expect_contains(reading_error(path()), "primitive 1 (part 1), vertex 7, exit000.source002.Y");
+}
+
+TEST_F(TransferFile, RefusesWhatIsNoTransferFile) {
+  expect_contains(reading_error(path("missing.exr")), "no such file");
+  expect_contains(reading_error(folder_), "not a regular file");
+  std::ofstream(path("text.exr")) << "not an image at all";
+  expect_contains(reading_error(path("text.exr")), "not a readable OpenEXR file");
+  std::ofstream(path("empty.exr")).close();
+  expect_contains(reading_error(path("empty.exr")), "not a readable OpenEXR file");
+}
+
+TEST_F(TransferFile, RefusesAFileCutAnywhere) {
+  write_transfer(path(), make_signal(2, 1, 1, {600}));
+  const std::vector<std::byte> bytes = read_file(path());
+  for (std::size_t length = 0; length < bytes.size(); length += 97) {
+    std::ofstream(path("cut.exr"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(length));
+    EXPECT_THROW(read_transfer(path("cut.exr")), Error) << length << " bytes";
+  }
+}
+
+TEST_F(TransferFile, AsksBeforeTakingTooMuchMemory) {
+  write_transfer(path(), make_signal(2, 1, 1, {600}));
+  EXPECT_NO_THROW(read_transfer(path(), 600 * 4 * 4));
+  EXPECT_THROW(read_transfer(path(), 600 * 4 * 4 - 1), Error);
+}
+
+TEST_F(TransferFile, LeavesNothingWhenWritingFails) {
+  const TransferSignal signal = make_signal(2, 1, 1, {600});
+  EXPECT_THROW(write_transfer(folder_ / "no" / "such" / "folder.exr", signal), Error);
+  write_transfer(path(), signal);
+  const std::vector<std::byte> before = read_file(path());
+  EXPECT_THROW(write_transfer(path(), make_signal(2, 1, 1, {10}), true), Error);
+  EXPECT_EQ(read_file(path()), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+/// An image of 4 × 1 pixels that says it holds a transfer of 4 vertices and 1 band, after `change`.
+void write_stranger(const fs::path& path, const std::function<void(Imf::Header&)>& change) {
+  Imf::Header header(4, 1);
+  header.compression() = Imf::NO_COMPRESSION;
+  header.insert("prtkit_version", Imf::IntAttribute(1));
+  header.insert("prtkit_band_count", Imf::IntAttribute(1));
+  header.insert("prtkit_row_count", Imf::IntAttribute(1));
+  header.insert("prtkit_channel_count", Imf::IntAttribute(1));
+  header.insert("prtkit_ray_count", Imf::IntAttribute(16));
+  header.insert("prtkit_bounce_count", Imf::IntAttribute(0));
+  for (const char* name : {"seed", "brdf", "tool_version", "mesh_hash"}) {
+    header.insert(std::string("prtkit_") + name, Imf::StringAttribute("1"));
+  }
+  header.insert("prtkit_block_names", Imf::StringVectorAttribute({"a"}));
+  header.insert("prtkit_block_vertex_counts", Imf::StringVectorAttribute({"4"}));
+  header.channels().insert("exit000.source000.Y", Imf::Channel(Imf::FLOAT));
+  change(header);
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(Imf::FrameBuffer());  // zeros
+  file.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
+}
+
+TEST_F(TransferFile, ReadsWhatAnotherProgramWrote) {
+  for (Imf::Compression compression :
+       {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION}) {
+    write_stranger(path(), [&](Imf::Header& header) { header.compression() = compression; });
+    EXPECT_EQ(read_transfer(path()).vertex_count(), 4u);
+  }
+  // Any width, any corner: two vertices a line.
+  write_stranger(path(), [](Imf::Header& header) { header.dataWindow() = {{-7, 3}, {-6, 4}}; });
+  EXPECT_EQ(read_transfer(path()).vertex_count(), 4u);
+}
+
+TEST_F(TransferFile, RefusesHeadersThatDoNotFit) {
+  using Header = Imf::Header;
+  const auto set_int = [](const char* name, int value) {
+    return [=](Header& header) { header.insert(name, Imf::IntAttribute(value)); };
+  };
+  const auto set_counts = [](std::vector<std::string> counts) {
+    return [=](Header& header) {
+      header.insert("prtkit_block_vertex_counts", Imf::StringVectorAttribute(counts));
+    };
+  };
+  const struct {
+    std::function<void(Header&)> change;
+    const char* message;
+  } cases[] = {
+      {[](Header& header) { header.erase("prtkit_band_count"); }, "prtkit_band_count"},
+      {[](Header& header) {
+         header.erase("prtkit_ray_count");
+         header.insert("prtkit_ray_count", Imf::StringAttribute("16"));
+       },
+       "prtkit_ray_count"},
+      {set_int("prtkit_version", 2), "found 2, expected 1 to 1"},
+      {set_int("prtkit_band_count", 0), "prtkit_band_count"},
+      {set_int("prtkit_band_count", 1 << 20), "prtkit_band_count"},
+      {set_int("prtkit_band_count", 2),
+       "channels: not a transfer file of prtkit: found 1, expected 4"},
+      {set_int("prtkit_row_count", -1), "prtkit_row_count"},
+      {set_int("prtkit_channel_count", 2), "prtkit_channel_count"},
+      {set_int("prtkit_bounce_count", -1), "prtkit_bounce_count"},
+      {[](Header& header) { header.insert("prtkit_seed", Imf::StringAttribute("-1")); },
+       "prtkit_seed"},
+      {set_counts({}), "1 names and 0 counts"},
+      {set_counts({"2", "2"}), "1 names and 2 counts"},
+      {set_counts({""}), "a decimal number"},
+      {set_counts({"4x"}), "a decimal number"},
+      {set_counts({"99999999999999999999"}), "a decimal number"},
+      {set_counts({"18446744073709551615"}), "at most 2147483648 vertices"},
+      {set_counts({"0"}), "at least 1"},
+      {set_counts({"5"}), "1 scanlines, expected 2"},
+      {[](Header& header) { header.dataWindow().max.y = 1; }, "2 scanlines, expected 1"},
+      {[](Header& header) { header.dataWindow().max.x = 100000; }, "100001 pixels wide"},
+      {[](Header& header) { header.channels().insert("Z", Imf::Channel(Imf::FLOAT)); },
+       "found 2, expected 1"},
+      {[](Header& header) {
+         header.channels() = Imf::ChannelList();
+         header.channels().insert("exit000.source000.R", Imf::Channel(Imf::FLOAT));
+       },
+       "channel exit000.source000.Y"},
+      {[](Header& header) {
+         header.channels().insert("exit000.source000.Y", Imf::Channel(Imf::HALF));
+       },
+       "another pixel type"},
+      {[](Header& header) { header.compression() = Imf::B44_COMPRESSION; }, "lossy"},
+  };
+  for (const auto& test : cases) {
+    write_stranger(path(), test.change);
+    expect_contains(reading_error(path()), test.message);
+  }
+}
+
+}  // namespace
+}  // namespace prt::signal
