@@ -25,7 +25,8 @@ Image read_environment(const std::filesystem::path& path);
 /// Bilinear radiance from a direction; wraps in longitude, clamps at the poles.
 Vec3 environment_radiance(const Image& environment, const Vec3& direction);
 
-/// Draws directions in proportion to the map's luminance times solid angle.
+/// Draws directions in proportion to the map's luminance (averaged over a texel and its neighbours,
+/// whose radiance the bilinear filter mixes) times solid angle. A black map is drawn uniformly.
 class EnvironmentSampler {
  public:
   explicit EnvironmentSampler(const Image& environment);
@@ -37,9 +38,12 @@ class EnvironmentSampler {
   float pdf(const Vec3& direction) const;
 
  private:
+  const double* columns(int y) const;
+  float texel_pdf(int x, int y) const;
+
   int width_, height_;
-  std::vector<float> row_cdf_;     // height + 1
-  std::vector<float> column_cdf_;  // height × (width + 1)
+  std::vector<double> row_cdf_;     // height + 1
+  std::vector<double> column_cdf_;  // height × (width + 1)
 };
 
 }  // namespace prt::image

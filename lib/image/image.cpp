@@ -1,0 +1,187 @@
+#include "image/image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "core/atomic_file.h"
+#include "core/checked.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/log.h"
+#include "image/srgb.h"
+
+namespace prt::image {
+
+namespace {
+
+constexpr int kMaxChannels = 4;
+
+struct Format {
+  const char* plugin;  ///< OpenImageIO's name
+  const char* title;
+  std::string_view magic;
+  bool in_gltf;
+};
+
+using std::string_view_literals::operator""sv;
+constexpr Format kFormats[] = {
+    {"openexr", "OpenEXR", "\x76\x2f\x31\x01"sv, false},
+    {"hdr", "Radiance HDR", "#?RADIANCE"sv, false},
+    {"hdr", "Radiance HDR", "#?RGBE"sv, false},
+    {"png", "PNG", "\x89PNG\r\n\x1a\n"sv, true},
+    {"jpeg", "JPEG", "\xff\xd8\xff"sv, true},
+};
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+const Format& format_of(std::span<const std::byte> bytes, const std::string& name, bool only_gltf) {
+  for (const Format& format : kFormats) {
+    if (text_of(bytes).starts_with(format.magic) && (format.in_gltf || !only_gltf)) return format;
+  }
+  throw_bad_input("not an image that prtkit reads",
+                  {.file = name,
+                   .found = bytes.empty() ? "an empty file" : "other bytes at its start",
+                   .expected = only_gltf ? "PNG or JPEG" : "OpenEXR, Radiance HDR, PNG or JPEG"});
+}
+
+[[noreturn]] void throw_damaged(const Format& format, const std::string& name, std::string reason) {
+  reason.resize(std::min(reason.size(), reason.find('\n')));  // the codec's first complaint
+  throw_bad_input(fmt::format("damaged {} image", format.title),
+                  {.file = name,
+                   .found = reason.empty() ? "undecodable data" : reason,
+                   .advice = "Is the file complete?"});
+}
+
+// libjpeg fills what a truncated file lacks with grey and only warns.
+void check_jpeg_end(const Format& format, std::span<const std::byte> bytes,
+                    const std::string& name) {
+  const std::size_t scan = text_of(bytes).rfind("\xff\xda"sv);
+  const std::size_t end = text_of(bytes).rfind("\xff\xd9"sv);
+  if (scan == std::string_view::npos || end == std::string_view::npos || end < scan) {
+    throw_damaged(format, name, "no end of image");
+  }
+}
+
+void check_size(const OIIO::ImageSpec& spec, const std::string& name, std::size_t max_pixels) {
+  if (spec.deep || spec.nchannels < 1 || spec.depth > 1) {
+    throw_bad_input("not a flat image", {.file = name});
+  }
+  const auto width = static_cast<std::size_t>(std::max(spec.width, 0));
+  const auto height = static_cast<std::size_t>(std::max(spec.height, 0));
+  if (width == 0 || height == 0 || checked_multiply(width, height) > max_pixels) {
+    throw_bad_input("image size out of range",
+                    {.file = name,
+                     .found = fmt::format("{} x {} pixels", spec.width, spec.height),
+                     .expected = fmt::format("1 to {} pixels", max_pixels)});
+  }
+}
+
+void decode_srgb(Image& image) {
+  const int colour_count = image.channel_count > 2 ? 3 : 1;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (static_cast<int>(i % static_cast<std::size_t>(image.channel_count)) < colour_count) {
+      image.pixels[i] = linear_from_srgb(image.pixels[i]);
+    }
+  }
+}
+
+void replace_non_finite(Image& image, const std::string& name) {
+  std::size_t count = 0;
+  for (float& value : image.pixels) {
+    if (std::isfinite(value)) continue;
+    value = 0;
+    ++count;
+  }
+  if (count > 0) log::warning("{}: {} values that are not finite replaced by 0", name, count);
+}
+
+Image decode(const Format& format, std::span<const std::byte> bytes, const std::string& name,
+             std::size_t max_pixels) {
+  OIIO::Filesystem::IOMemReader reader(const_cast<std::byte*>(bytes.data()), bytes.size());
+  const auto input = OIIO::ImageInput::create(format.plugin);
+  if (!input) throw_failed(fmt::format("OpenImageIO lacks {}", format.title), {.file = name});
+  OIIO::ImageSpec config, spec;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  input->set_ioproxy(&reader);
+  if (!input->open(name, spec, config)) throw_damaged(format, name, input->geterror());
+  check_size(spec, name, max_pixels);
+  Image image(spec.width, spec.height, std::min(spec.nchannels, kMaxChannels));
+  const bool complete =
+      input->read_image(0, 0, 0, image.channel_count, OIIO::TypeDesc::FLOAT, image.pixels.data());
+  const std::string error = input->geterror();
+  if (!complete || !error.empty()) throw_damaged(format, name, error);
+  if (format.in_gltf) decode_srgb(image);
+  replace_non_finite(image, name);
+  return image;
+}
+
+Image decode_checked(std::span<const std::byte> bytes, const std::string& name,
+                     std::size_t max_pixels, bool only_gltf) {
+  const Format& format = format_of(bytes, name, only_gltf);
+  if (format.plugin == "jpeg"sv) check_jpeg_end(format, bytes, name);
+  try {
+    return decode(format, bytes, name, max_pixels);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw_damaged(format, name, error.what());
+  }
+}
+
+std::vector<unsigned char> encode(const Image& image, const std::filesystem::path& path,
+                                  bool is_png) {
+  OIIO::ImageSpec spec(image.width, image.height, image.channel_count,
+                       is_png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+  std::vector<std::uint8_t> bytes;
+  if (is_png) {
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    bytes = srgb8_from_linear(image);
+  } else {
+    spec.attribute("compression", "zip");
+  }
+  const auto output = OIIO::ImageOutput::create(is_png ? "png" : "openexr");
+  std::vector<unsigned char> file;
+  OIIO::Filesystem::IOVecOutput proxy(file);
+  const void* data = is_png ? static_cast<const void*>(bytes.data()) : image.pixels.data();
+  if (!output || !output->set_ioproxy(&proxy) || !output->open(path.string(), spec) ||
+      !output->write_image(spec.format, data) || !output->close()) {
+    throw_failed("encoding the image failed",
+                 {.file = path.string(), .found = output ? output->geterror() : "no encoder"});
+  }
+  return file;
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path, std::size_t max_pixels) {
+  return decode_checked(read_file(path), path.string(), max_pixels, false);
+}
+
+Image read_image(std::span<const std::byte> bytes, const std::string& name,
+                 std::size_t max_pixels) {
+  return decode_checked(bytes, name, max_pixels, true);
+}
+
+void write_image(const std::filesystem::path& path, const Image& image, bool no_clobber) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension != ".exr" && extension != ".png") {
+    throw Error(ErrorKind::usage, "unknown kind of image",
+                {.file = path.string(), .found = extension, .expected = ".exr or .png"});
+  }
+  AtomicFile file(path, no_clobber);
+  const std::vector<unsigned char> bytes = encode(image, path, extension == ".png");
+  file.write(std::as_bytes(std::span(bytes)));
+  file.commit();
+}
+
+}  // namespace prt::image
