@@ -12,6 +12,8 @@
 
 namespace prt::ray {
 
+/// What lies in (t_near, t_far] along origin + t direction counts. The direction need not be of
+/// unit length; it is finite and not zero, 0 <= t_near <= t_far.
 struct Ray {
   Vec3 origin;
   float t_near = 0.0f;
@@ -28,8 +30,12 @@ struct Hit {
   bool back_face = false;    ///< the ray came from behind (clockwise side)
 };
 
-/// What is known about neighbours in a batch: engines are faster on coherent ones.
+/// What is known about neighbours in a batch: engines are faster on coherent ones (rays of about
+/// the same origin and direction, 16 by 16). It changes the speed, never a result.
 enum class Coherence { incoherent, coherent };
+
+/// Coordinates larger than this are refused: Embree silently ignores such triangles.
+constexpr float kMaxCoordinate = 1e18f;
 
 /// Triangles of one scene, vertices numbered through. Finite positions and valid indices, checked
 /// by the engine's maker (Embree silently ignores others), which throws Error (bad_input).
@@ -41,7 +47,7 @@ struct Triangles {
 class Engine {
  public:
   virtual ~Engine() = default;
-  /// hits.size() == rays.size().
+  /// hits.size() == rays.size(). A hit nothing was found for has triangle == kNoHit.
   virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits,
                            Coherence coherence) const = 0;
   /// occluded[i] = 1 when anything, front or back, lies in (t_near, t_far], else 0.
@@ -53,7 +59,10 @@ class Engine {
 std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles);
 
 /// A ray origin just off the surface at p on the side of the unit normal n, far enough that
-/// rounding cannot put it on the other side [Wächter, Binder 2019, Ray Tracing Gems ch. 6].
-Vec3 offset_origin(const Vec3& p, const Vec3& n);
+/// rounding cannot put it on the other side: a step of a few units in the last place of the numbers
+/// that p comes from, after [Wächter, Binder 2019, Ray Tracing Gems ch. 6]. `magnitude` is the
+/// largest absolute coordinate of those numbers (of the triangles around p) and makes the step
+/// right at any scale; the default is that paper's, for p near the origin of a scene in metres.
+Vec3 offset_origin(const Vec3& p, const Vec3& n, float magnitude = 1.0f / 32.0f);
 
 }  // namespace prt::ray

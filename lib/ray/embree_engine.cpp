@@ -1,0 +1,187 @@
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+#include <pmmintrin.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/error.h"
+#include "ray/engine.h"
+
+namespace prt::ray {
+
+namespace {
+
+constexpr std::size_t kWidth = 16;
+
+/// Embree wants denormals flushed on the threads that trace; the caller's mode comes back.
+class FlushDenormals {
+ public:
+  FlushDenormals() : saved_(_mm_getcsr()) {
+    _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+  }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned int saved_;
+};
+
+struct DeviceDeleter {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
+using Scene = std::unique_ptr<RTCSceneTy, SceneDeleter>;
+
+void check_triangles(const Triangles& triangles) {
+  for (std::size_t i = 0; i < triangles.positions.size(); ++i) {
+    const Vec3& p = triangles.positions[i];
+    // Written so that NaN fails.
+    const bool valid = std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate &&
+                       std::abs(p.z) <= kMaxCoordinate;
+    if (valid) continue;
+    throw_bad_input("vertex position cannot be traced",
+                    {.element = fmt::format("vertex {}", i),
+                     .found = fmt::format("({}, {}, {})", p.x, p.y, p.z),
+                     .expected = fmt::format("finite coordinates up to {:g}", kMaxCoordinate)});
+  }
+  if (triangles.indices.size() % 3 != 0) {
+    throw_bad_input("index count is no multiple of 3",
+                    {.found = fmt::format("{}", triangles.indices.size())});
+  }
+  for (std::size_t i = 0; i < triangles.indices.size(); ++i) {
+    if (triangles.indices[i] < triangles.positions.size()) continue;
+    throw_bad_input("vertex index out of range",
+                    {.element = fmt::format("triangle {}", i / 3),
+                     .found = fmt::format("{}", triangles.indices[i]),
+                     .expected = fmt::format("below {}", triangles.positions.size())});
+  }
+  if (triangles.indices.size() / 3 >= kNoHit) throw_bad_input("too many triangles");
+}
+
+/// Copies into a buffer of Embree's (which pads it for its vector loads).
+template <class T>
+void copy_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t stride,
+                 std::size_t count, const T* data) {
+  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, stride, count);
+  if (!buffer) throw_failed("out of memory for the ray tracer's triangles");
+  std::copy_n(data, count * stride / sizeof(T), static_cast<T*>(buffer));
+}
+
+void check_device(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE) {
+    throw_failed("Embree cannot build the scene", {.found = fmt::format("error {}", int{error})});
+  }
+}
+
+/// Rays [first, first + count) as one packet; lanes past the end are switched off.
+void load_packet(std::span<const Ray> rays, RTCRay16& packet, int* valid) {
+  for (std::size_t lane = 0; lane < kWidth; ++lane) {
+    const Ray& ray = rays[std::min(lane, rays.size() - 1)];
+    valid[lane] = lane < rays.size() ? -1 : 0;
+    packet.org_x[lane] = ray.origin.x;
+    packet.org_y[lane] = ray.origin.y;
+    packet.org_z[lane] = ray.origin.z;
+    packet.tnear[lane] = ray.t_near;
+    packet.dir_x[lane] = ray.direction.x;
+    packet.dir_y[lane] = ray.direction.y;
+    packet.dir_z[lane] = ray.direction.z;
+    packet.time[lane] = 0.0f;
+    packet.tfar[lane] = ray.t_far;
+    packet.mask[lane] = 0xffffffffu;
+    packet.id[lane] = 0;
+    packet.flags[lane] = 0;
+  }
+}
+
+Hit hit_of_lane(const RTCRayHit16& packet, std::size_t lane) {
+  if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return {};
+  const float facing = packet.hit.Ng_x[lane] * packet.ray.dir_x[lane] +
+                       packet.hit.Ng_y[lane] * packet.ray.dir_y[lane] +
+                       packet.hit.Ng_z[lane] * packet.ray.dir_z[lane];
+  return {packet.hit.primID[lane], packet.ray.tfar[lane], packet.hit.u[lane], packet.hit.v[lane],
+          facing > 0.0f};
+}
+
+class EmbreeEngine final : public Engine {
+ public:
+  explicit EmbreeEngine(const Triangles& triangles)
+      : device_(rtcNewDevice(nullptr)), scene_(device_ ? rtcNewScene(device_.get()) : nullptr) {
+    if (!scene_) throw_failed("Embree cannot start");
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_MEDIUM);
+    if (!triangles.indices.empty()) add_geometry(triangles);
+    rtcCommitScene(scene_.get());
+    check_device(device_.get());
+  }
+
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits,
+                   Coherence coherence) const override {
+    assert(hits.size() == rays.size());
+    const FlushDenormals flush;
+    RTCIntersectContext context = make_context(coherence);
+    alignas(64) RTCRayHit16 packet;
+    alignas(64) int valid[kWidth];
+    for (std::size_t first = 0; first < rays.size(); first += kWidth) {
+      const std::size_t count = std::min(kWidth, rays.size() - first);
+      load_packet(rays.subspan(first, count), packet.ray, valid);
+      std::fill_n(packet.hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
+      rtcIntersect16(valid, scene_.get(), &context, &packet);
+      for (std::size_t i = 0; i < count; ++i) hits[first + i] = hit_of_lane(packet, i);
+    }
+  }
+
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+                Coherence coherence) const override {
+    assert(occluded.size() == rays.size());
+    const FlushDenormals flush;
+    RTCIntersectContext context = make_context(coherence);
+    alignas(64) RTCRay16 packet;
+    alignas(64) int valid[kWidth];
+    for (std::size_t first = 0; first < rays.size(); first += kWidth) {
+      const std::size_t count = std::min(kWidth, rays.size() - first);
+      load_packet(rays.subspan(first, count), packet, valid);
+      rtcOccluded16(valid, scene_.get(), &context, &packet);
+      // Embree marks an occluded ray by tfar = -infinity.
+      for (std::size_t i = 0; i < count; ++i) occluded[first + i] = packet.tfar[i] < 0.0f;
+    }
+  }
+
+ private:
+  void add_geometry(const Triangles& triangles) {
+    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::unique_ptr<RTCGeometryTy, void (*)(RTCGeometry)> owner(geometry, rtcReleaseGeometry);
+    copy_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                triangles.positions.size(), triangles.positions.data());
+    copy_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
+                triangles.indices.size() / 3, triangles.indices.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_.get(), geometry);
+  }
+
+  static RTCIntersectContext make_context(Coherence coherence) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                     : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+  }
+
+  Device device_;
+  Scene scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles) {
+  check_triangles(triangles);
+  return std::make_unique<EmbreeEngine>(triangles);
+}
+
+}  // namespace prt::ray
