@@ -1,1 +1,60 @@
+// Ground truth for the diffuse bake: an unbiased path tracer with the bake's model of light.
+//
+// The model. Surfaces are Lambertian: radiance leaving is albedo/pi times irradiance, and
+// irradiance is gathered over the hemisphere around the interpolated vertex normal, whose cosine
+// weights it. Rays leave the flat triangle on the side of that normal; the ones that dip below the
+// triangle's plane hit it, as in the bake they hit a vertex's own faces. Anything in the way
+// blocks, seen from the front or from behind. What is hit from the front reflects; what is hit from
+// behind reflects nothing (black), unless its material is double-sided. `bounce_count`
+// interreflections are followed, exactly: 0 is direct light only, and no path is cut short at
+// random.
+//
+// The estimator. Directions are drawn by the cosine, one ray a vertex of the path. Peaked lights
+// (whole maps) are sampled as well, and both are combined by the balance heuristic [Veach 1997
+// §9.2]. Band-limited light may be negative and is never clamped. Samples of a pixel are four
+// independently scrambled Sobol' sets; how far the four means lie apart gives the standard error,
+// unbiased in spite of stratification.
 #pragma once
+
+#include <cstdint>
+
+#include "camera/camera.h"
+#include "image/image.h"
+#include "mesh/scene.h"
+#include "reference/illumination.h"
+
+namespace prt::reference {
+
+/// Independent sets of samples in every pixel.
+constexpr int kReplicateCount = 4;
+
+enum class PixelFilter {
+  center,  ///< what the centre of the pixel sees: comparable to a rasteriser without antialiasing
+  box,     ///< the mean over the pixel's square
+};
+
+struct Options {
+  int width = 1024, height = 1024;  ///< pixels; camera.aspect should be their ratio
+  int sample_count = 256;           ///< paths a pixel; rounded up to a multiple of kReplicateCount
+  int bounce_count = 2;             ///< interreflections
+  std::uint64_t seed = 1;
+  PixelFilter filter = PixelFilter::center;
+  bool background = false;  ///< show the light where nothing is hit, instead of black
+};
+
+struct Result {
+  image::Image radiance;        ///< RGBA, linear; alpha is coverage, and RGB is premultiplied by it
+  image::Image standard_error;  ///< RGB, of `radiance`: one standard deviation of its mean
+  int sample_count = 0;         ///< paths a pixel, as rounded
+  std::uint64_t rays_cast = 0;
+  double build_seconds = 0.0;  ///< making the ray engine
+  double trace_seconds = 0.0;
+};
+
+/// The same image for the same arguments, whatever the number of threads. Scratch memory is a few
+/// megabytes a thread beside the scene's triangles and the two images. Throws Error (usage) when a
+/// count or size is out of range, Error (bad_input) from the ray engine.
+Result trace(const mesh::Scene& scene, const camera::Camera& camera,
+             const Illumination& illumination, const Options& options);
+
+}  // namespace prt::reference

@@ -1,0 +1,68 @@
+#include "reference/path_tracer.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "ray/engine.h"
+#include "reference/surface.h"
+#include "reference/tile.h"
+
+namespace prt::reference {
+
+namespace {
+
+void check_range(const char* name, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw Error(ErrorKind::usage, fmt::format("{} out of range", name),
+              {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Result trace(const mesh::Scene& scene, const camera::Camera& camera,
+             const Illumination& illumination, const Options& options) {
+  check_range("image width", options.width, 1, 16384);
+  check_range("image height", options.height, 1, 16384);
+  check_range("samples per pixel", options.sample_count, 1, 1 << 24);
+  check_range("bounces", options.bounce_count, 0, 10000);
+  camera::check(camera);
+
+  Result result;
+  result.radiance = image::Image(options.width, options.height, 4);
+  result.standard_error = image::Image(options.width, options.height, 3);
+  result.sample_count =
+      (options.sample_count + kReplicateCount - 1) / kReplicateCount * kReplicateCount;
+  const auto build_start = std::chrono::steady_clock::now();
+  const SurfaceLookup surfaces(scene);
+  const auto engine = ray::make_embree_engine(surfaces.triangles());
+  result.build_seconds = seconds_since(build_start);
+
+  const auto trace_start = std::chrono::steady_clock::now();
+  const Job job{surfaces, *engine, camera, illumination, options, result.sample_count};
+  const int columns = (options.width + kTileSize - 1) / kTileSize;
+  const int rows = (options.height + kTileSize - 1) / kTileSize;
+  std::atomic<std::uint64_t> rays_cast{0};
+  Progress progress("path tracing", static_cast<std::size_t>(columns * rows), "tiles");
+  parallel_for(static_cast<std::size_t>(columns * rows), 1, [&](std::size_t i, std::size_t) {
+    const int tile_index = static_cast<int>(i);
+    Tile tile(job, tile_index % columns * kTileSize, tile_index / columns * kTileSize);
+    tile.trace();
+    tile.write(result);
+    rays_cast += tile.rays_cast();
+    progress.advance(1);
+  });
+  result.rays_cast = rays_cast;
+  result.trace_seconds = seconds_since(trace_start);
+  return result;
+}
+
+}  // namespace prt::reference
