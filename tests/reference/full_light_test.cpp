@@ -74,7 +74,7 @@ TEST(FullLight, SmallSunIsSampledWell) {
   }
   const double expected = 0.5 * irradiance / std::numbers::pi;
   EXPECT_NEAR(mean, expected, 4 * std::sqrt(variance / 256.0) + 1e-3 * expected);
-  EXPECT_LT(std::sqrt(variance), 0.05 * expected);
+  EXPECT_LT(std::sqrt(variance), 0.1 * expected);  // 1.6 by cosine sampling alone
 }
 
 // Turning the light and the scene together about the view axis changes nothing but the picture's
