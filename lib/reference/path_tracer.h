@@ -11,8 +11,8 @@
 //
 // The estimator. Directions are drawn by the cosine, one ray a vertex of the path. Peaked lights
 // (whole maps) are sampled as well, and both are combined by the balance heuristic [Veach 1997
-// §9.2]. Band-limited light may be negative and is never clamped. Samples of a pixel are four
-// independently scrambled Sobol' sets; how far the four means lie apart gives the standard error,
+// §9.2]. Band-limited light may be negative and is never clamped. Samples of a pixel are two
+// independently scrambled Sobol' sets; how far their means lie apart gives the standard error,
 // unbiased in spite of stratification.
 #pragma once
 
@@ -25,8 +25,10 @@
 
 namespace prt::reference {
 
-/// Independent sets of samples in every pixel.
-constexpr int kReplicateCount = 4;
+/// Independent sets of samples in every pixel. More would make the standard error of a single pixel
+/// surer, but the mean noisier: larger sets are better stratified. Sums over many pixels are sure
+/// enough with two.
+constexpr int kReplicateCount = 2;
 
 enum class PixelFilter {
   center,  ///< what the centre of the pixel sees: comparable to a rasteriser without antialiasing

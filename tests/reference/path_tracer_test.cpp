@@ -100,7 +100,7 @@ TEST(PathTracer, SphereUnderBandLimitedLightMatchesCosineLobe) {
   const Vec3 aside = sun * 0.5f + Vec3(2.0f, -1.0f, 0.0f).normalized() * std::sqrt(0.75f);
   ASSERT_LT(sh::light_radiance(light, aside).x, -0.1f);
   constexpr int kSize = 96;
-  const Result result = trace(scene, camera, BandLimitedIllumination(light), small(kSize, 256, 2));
+  const Result result = trace(scene, camera, BandLimitedIllumination(light), small(kSize, 512, 2));
   const float lobe[5] = {kPi, 2.0f * kPi / 3.0f, kPi / 4.0f, 0.0f, -kPi / 24.0f};
   for (auto& channel : light.coefficients) {
     for (int l = 0; l < 5; ++l) {
@@ -292,7 +292,7 @@ TEST(PathTracer, StandardErrorIsTheSpreadOverSeeds) {
   std::vector<double> sum(kSize * kSize), square(sum);
   double claimed = 0.0;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    Options options = small(kSize, 30, 2);
+    Options options = small(kSize, 31, 2);
     options.seed = static_cast<std::uint64_t>(seed);
     const Result result = trace(scene, camera, kWhite, options);
     EXPECT_EQ(result.sample_count, 32);
