@@ -18,7 +18,11 @@ constexpr int coefficient_index(int l, int m) { return l * (l + 1) + m; }
 /// All coefficient_count(band_count) values at one unit direction.
 void evaluate(int band_count, const Vec3& direction, std::span<float> values);
 
-/// Many directions at once. Planar in and out: coordinate arrays of `count` floats, and
+/// The same in double precision.
+void evaluate(int band_count, double x, double y, double z, std::span<double> values);
+
+/// Many directions at once, in single precision: within 2e-6 of evaluate() relative to the largest
+/// value of the band. Planar in and out: coordinate arrays of `count` floats, and
 /// values[i * stride + d] is coefficient i at direction d. stride >= count.
 void evaluate_batch(int band_count, const float* x, const float* y, const float* z,
                     std::size_t count, float* values, std::size_t stride);
