@@ -53,11 +53,9 @@ template <class Real, class Lanes, class Store>
 [[gnu::always_inline]] inline void evaluate_lanes(int band_count, Lanes x, Lanes y, Lanes z,
                                                   const Store& store) {
   Lanes cosine = z - z + Real(1), sine = z - z;  // Re and Im (x + i y)^m
-#pragma GCC unroll 16
   for (int m = 0; m < band_count; ++m) {
     const auto column = static_cast<std::size_t>(m);
     Lanes before = z - z, q = before + static_cast<Real>(kRecurrence.start[column]);
-#pragma GCC unroll 16
     for (int l = m; l < band_count; ++l) {
       if (l > m) {
         const auto row = static_cast<std::size_t>(l);
