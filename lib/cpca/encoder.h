@@ -1,0 +1,45 @@
+// Encoders of clustered PCA. Vector quantisation alone is static CPCA without components, PCA alone
+// is static CPCA with one cluster.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cpca/encoding.h"
+
+namespace prt::cpca {
+
+struct Options {
+  int cluster_count = 256;  ///< m_c
+  int component_count = 8;  ///< n', 0 to the dimension
+  int iterations = 20;      ///< of vector quantisation, at most
+  std::uint64_t seed = 1;
+};
+
+struct Stage {
+  std::string name;
+  double seconds;
+};
+
+struct Encoded {
+  Encoding encoding;
+  int iterations = 0;  ///< done
+  std::vector<Stage> stages;
+};
+
+/// Throws Error (usage) for options that no signal fits: counts below 1 (components: below 0).
+void check_options(const Options& options);
+
+/// Throws Error (usage) when there are more clusters than points or more components than
+/// coefficients, Error (bad_input) naming the first point that is not finite.
+void check_signal(std::span<const float> signal, int dimension, const Options& options);
+
+/// Static CPCA [Sloan03] §4.1: vector quantisation, then PCA in each cluster. `signal` is
+/// point_count × dimension. The same signal and options give the same bytes on any number of
+/// threads. A cluster with fewer independent points than components gets zero vectors and zero
+/// weights for the rest. Checks options and signal as above.
+Encoded encode_static(std::span<const float> signal, int dimension, const Options& options);
+
+}  // namespace prt::cpca

@@ -1,0 +1,45 @@
+#include "cpca/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/parallel.h"
+
+namespace prt::cpca {
+
+namespace {
+
+constexpr std::size_t kBlock = 1 << 16;
+
+double energy(std::span<const float> values) {
+  std::vector<double> sums(block_count(values.size(), kBlock));
+  parallel_for(values.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    double lanes[8] = {};
+    for (std::size_t i = begin; i < end; ++i) lanes[i % 8] += double{values[i]} * double{values[i]};
+    for (double lane : lanes) sums[begin / kBlock] += lane;
+  });
+  double sum = 0.0;
+  for (double part : sums) sum += part;
+  return sum;
+}
+
+}  // namespace
+
+double Figures::relative_rmse() const {
+  if (squared_error == 0.0) return 0.0;
+  return signal_energy > 0.0 ? std::sqrt(squared_error / signal_energy)
+                             : std::numeric_limits<double>::infinity();
+}
+
+Figures summarize(std::span<const double> errors, std::span<const float> rows) {
+  Figures figures{.signal_energy = energy(rows)};
+  for (double error : errors) {
+    figures.squared_error += error;
+    figures.max_point_error = std::max(figures.max_point_error, error);
+  }
+  return figures;
+}
+
+}  // namespace prt::cpca

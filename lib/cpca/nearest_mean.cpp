@@ -1,0 +1,180 @@
+#include "cpca/nearest_mean.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <limits>
+
+namespace prt::cpca {
+
+namespace {
+
+/// A register tile: kRows points × kVectors vectors of kLanes means.
+template <int Bytes, int Rows>
+struct Tile {
+  static constexpr int kLanes = Bytes / 4, kVectors = 2, kRows = Rows;
+  static constexpr int kPanel = kLanes * kVectors;
+  using Floats [[gnu::vector_size(Bytes), gnu::may_alias]] = float;
+  using Ints [[gnu::vector_size(Bytes), gnu::may_alias]] = std::int32_t;
+};
+using TileAvx512 = Tile<64, 14>;  // 28 of 32 registers
+using TileAvx2 = Tile<32, 6>;     // 12 of 16
+using TileBaseline = Tile<16, 6>;
+
+/// Best score and panel of every lane, for each point of a tile.
+template <class T>
+struct Best {
+  typename T::Floats score[T::kRows][2];
+  typename T::Ints panel[T::kRows][2];
+};
+
+/// Scores of one tile of points against one panel of means, of which the best so far are kept.
+template <class T>
+[[gnu::always_inline]] inline void multiply_tile(const float* const* rows, std::size_t dimension,
+                                                 const float* means, const float* biases,
+                                                 std::int32_t panel, Best<T>& best) {
+  using Floats = typename T::Floats;
+  const auto* mean = reinterpret_cast<const Floats*>(means);
+  const auto* bias = reinterpret_cast<const Floats*>(biases);
+  Floats sum[T::kRows][2];
+#pragma GCC unroll 16
+  for (int r = 0; r < T::kRows; ++r) sum[r][0] = bias[0], sum[r][1] = bias[1];
+  for (std::size_t i = 0; i < dimension; ++i) {
+    const Floats first = mean[2 * i], second = mean[2 * i + 1];
+#pragma GCC unroll 16
+    for (int r = 0; r < T::kRows; ++r) {
+      const float x = rows[r][i];
+      sum[r][0] += first * x;
+      sum[r][1] += second * x;
+    }
+  }
+#pragma GCC unroll 16
+  for (int r = 0; r < T::kRows; ++r) {
+#pragma GCC unroll 2
+    for (int v = 0; v < 2; ++v) {
+      const auto better = sum[r][v] > best.score[r][v];
+      best.score[r][v] = better ? sum[r][v] : best.score[r][v];
+      best.panel[r][v] = better ? typename T::Ints{} + panel : best.panel[r][v];
+    }
+  }
+}
+
+/// The greater score of each pair of lanes, of equals the lower label.
+template <class T>
+[[gnu::always_inline]] inline void keep_better(typename T::Floats& score, typename T::Ints& label,
+                                               const typename T::Floats& other_score,
+                                               const typename T::Ints& other_label) {
+  const auto better = (other_score > score) | ((other_score == score) & (other_label < label));
+  score = better ? other_score : score;
+  label = better ? other_label : label;
+}
+
+/// Label of one point from the best of every lane.
+template <class T>
+[[gnu::always_inline]] inline std::uint32_t reduce_lanes(const Best<T>& best, int row) {
+  typename T::Ints lane;
+  for (int i = 0; i < T::kLanes; ++i) lane[i] = i;
+  auto score = best.score[row][0];
+  auto label = best.panel[row][0] * T::kPanel + lane;
+  keep_better<T>(score, label, best.score[row][1],
+                 best.panel[row][1] * T::kPanel + lane + T::kLanes);
+  for (int step = T::kLanes / 2; step > 0; step /= 2) {
+    keep_better<T>(score, label, __builtin_shuffle(score, lane ^ step),
+                   __builtin_shuffle(label, lane ^ step));
+  }
+  return static_cast<std::uint32_t>(label[0]);
+}
+
+/// The last tile is filled up with its first point.
+template <class T>
+[[gnu::always_inline]] inline void classify_points(const float* points, std::size_t count,
+                                                   std::size_t dimension, const float* panels,
+                                                   const float* biases, std::size_t panel_count,
+                                                   std::uint32_t* labels) {
+  const float* rows[T::kRows];
+  Best<T> start{};
+  for (auto& row : start.score) {
+    for (auto& score : row) score -= std::numeric_limits<float>::infinity();
+  }
+  for (std::size_t done = 0; done < count; done += T::kRows) {
+    const std::size_t row_count = std::min<std::size_t>(T::kRows, count - done);
+    for (std::size_t r = 0; r < T::kRows; ++r) {
+      rows[r] = points + (done + (r < row_count ? r : 0)) * dimension;
+    }
+    Best<T> best = start;
+    for (std::size_t p = 0; p < panel_count; ++p) {
+      multiply_tile<T>(rows, dimension, panels + p * dimension * T::kPanel, biases + p * T::kPanel,
+                       static_cast<std::int32_t>(p), best);
+    }
+    for (std::size_t r = 0; r < row_count; ++r) {
+      labels[done + r] = reduce_lanes<T>(best, static_cast<int>(r));
+    }
+  }
+}
+
+using Kernel = void(const float* points, std::size_t count, std::size_t dimension,
+                    const float* panels, const float* biases, std::size_t panel_count,
+                    std::uint32_t* labels);
+
+[[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,prefer-vector-width=512")]] void
+classify_avx512(const float* points, std::size_t count, std::size_t dimension, const float* panels,
+                const float* biases, std::size_t panel_count, std::uint32_t* labels) {
+  classify_points<TileAvx512>(points, count, dimension, panels, biases, panel_count, labels);
+}
+
+[[gnu::target("avx2,fma")]] void classify_avx2(const float* points, std::size_t count,
+                                               std::size_t dimension, const float* panels,
+                                               const float* biases, std::size_t panel_count,
+                                               std::uint32_t* labels) {
+  classify_points<TileAvx2>(points, count, dimension, panels, biases, panel_count, labels);
+}
+
+void classify_baseline(const float* points, std::size_t count, std::size_t dimension,
+                       const float* panels, const float* biases, std::size_t panel_count,
+                       std::uint32_t* labels) {
+  classify_points<TileBaseline>(points, count, dimension, panels, biases, panel_count, labels);
+}
+
+std::size_t panel_width(SimdLevel level) {
+  return level == SimdLevel::avx512 ? TileAvx512::kPanel
+         : level == SimdLevel::avx2 ? TileAvx2::kPanel
+                                    : TileBaseline::kPanel;
+}
+
+}  // namespace
+
+NearestMean::NearestMean(std::span<const float> means, std::span<const float> origin,
+                         SimdLevel level)
+    : level_(level), dimension_(origin.size()) {
+  assert(!means.empty() && means.size() % dimension_ == 0);
+  const std::size_t mean_count = means.size() / dimension_, width = panel_width(level);
+  panel_count_ = (mean_count + width - 1) / width;
+  constexpr std::size_t kAlignment = 64 / sizeof(float);
+  storage_.resize(panel_count_ * width * (dimension_ + 1) + kAlignment);
+  const auto address = reinterpret_cast<std::uintptr_t>(storage_.data()) / sizeof(float);
+  biases_ = storage_.data() + (kAlignment - address % kAlignment) % kAlignment;
+  panels_ = biases_ + panel_count_ * width;
+  // What fills up the last panel never wins.
+  std::fill_n(biases_, panel_count_ * width, -std::numeric_limits<float>::infinity());
+  for (std::size_t k = 0; k < mean_count; ++k) {
+    float* panel = panels_ + k / width * dimension_ * width;
+    double half_difference = 0.0;  // (‖c‖² - ‖origin‖²)/2
+    for (std::size_t i = 0; i < dimension_; ++i) {
+      const double c = means[k * dimension_ + i], o = origin[i];
+      panel[i * width + k % width] = static_cast<float>(c - o);
+      half_difference += 0.5 * (c - o) * (c + o);
+    }
+    biases_[k] = static_cast<float>(-half_difference);
+  }
+}
+
+void NearestMean::classify(std::span<const float> signal, std::size_t begin, std::size_t end,
+                           std::span<std::uint32_t> labels) const {
+  Kernel* kernel = level_ == SimdLevel::avx512 ? classify_avx512
+                   : level_ == SimdLevel::avx2 ? classify_avx2
+                                               : classify_baseline;
+  kernel(&signal[begin * dimension_], end - begin, dimension_, panels_, biases_, panel_count_,
+         &labels[begin]);
+}
+
+}  // namespace prt::cpca

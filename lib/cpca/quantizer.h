@@ -1,0 +1,26 @@
+// Vector quantisation by the LBG algorithm [Linde, Buzo, Gray 1980], which is k-means: the first
+// half of static CPCA [Sloan03] §4.1.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+
+namespace prt::cpca {
+
+struct Clustering {
+  std::vector<float> means;           ///< cluster_count × dimension, of the points of each cluster
+  std::vector<std::uint32_t> labels;  ///< cluster of each point
+  int iterations = 0;                 ///< done
+};
+
+/// Classifies and averages, starting from `means`, at most `iterations` times, until no point
+/// moves. A cluster that runs empty takes the point that is worst approximated; clusters stay empty
+/// only when every point is its mean. Points that are as near to one mean as to another go to the
+/// lower. Preconditions: `signal` is finite; at least one iteration.
+Clustering quantize(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
+                    int iterations);
+
+}  // namespace prt::cpca
