@@ -1,0 +1,326 @@
+// Stanford PLY, ASCII and binary of both byte orders. Read by hand because OpenMesh's reader
+// believes the header's counts.
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "core/checked.h"
+#include "core/error.h"
+#include "mesh/mesh_file.h"
+#include "mesh/text.h"
+
+namespace prt::mesh {
+
+namespace {
+
+enum class Format { ascii, little_endian, big_endian };
+enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
+
+struct Property {
+  std::string name;
+  Type type;
+  bool is_list = false;
+  Type count_type = Type::u8;
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+std::size_t size_of(Type type) {
+  switch (type) {
+    case Type::i8:
+    case Type::u8:
+      return 1;
+    case Type::i16:
+    case Type::u16:
+      return 2;
+    case Type::f64:
+      return 8;
+    default:
+      return 4;
+  }
+}
+
+class PlyReader {
+ public:
+  PlyReader(std::string_view bytes, const std::filesystem::path& path)
+      : rest_(bytes), path_(path) {}
+
+  TriangleMesh read() {
+    read_header();
+    for (const Element& element : elements_) {
+      check_count(element);
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else {
+        read_others(element);
+      }
+    }
+    check_indices();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void reject(const std::string& what, const std::string& element = {},
+                           const std::string& found = {}, const std::string& expected = {}) const {
+    throw_bad_input(what, {.file = path_.string(),
+                           .element = element,
+                           .found = found,
+                           .expected = expected});
+  }
+
+  std::string_view header_line() {
+    const std::size_t end = rest_.find('\n');
+    if (end == rest_.npos) reject("PLY header has no end_header: the file is truncated");
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  }
+
+  void read_header() {
+    if (!rest_.starts_with("ply\n") && !rest_.starts_with("ply\r\n")) {
+      reject("not a PLY file", {}, excerpt(rest_.substr(0, 4)), "the first line \"ply\"");
+    }
+    for (std::string_view line = header_line();;) {
+      line = header_line();
+      const std::string_view key = take_word(line);
+      if (key == "end_header") return;
+      if (key == "format") {
+        read_format(take_word(line));
+      } else if (key == "element") {
+        const std::string name(take_word(line));
+        const auto count = to_integer(take_word(line));
+        if (!count || *count < 0) reject("bad element count", "element " + excerpt(name));
+        elements_.push_back({name, static_cast<std::size_t>(*count), {}});
+      } else if (key == "property") {
+        if (elements_.empty()) reject("property before any element", "header");
+        elements_.back().properties.push_back(read_property(line));
+      }
+    }
+  }
+
+  void read_format(std::string_view word) {
+    if (word == "ascii") {
+      format_ = Format::ascii;
+    } else if (word == "binary_little_endian") {
+      format_ = Format::little_endian;
+    } else if (word == "binary_big_endian") {
+      format_ = Format::big_endian;
+    } else {
+      reject("unknown PLY format", "header", excerpt(word),
+             "ascii, binary_little_endian or binary_big_endian");
+    }
+  }
+
+  Type read_type(std::string_view word) const {
+    constexpr std::pair<const char*, Type> kTypes[] = {
+        {"char", Type::i8},    {"int8", Type::i8},    {"uchar", Type::u8},  {"uint8", Type::u8},
+        {"short", Type::i16},  {"int16", Type::i16},  {"ushort", Type::u16}, {"uint16", Type::u16},
+        {"int", Type::i32},    {"int32", Type::i32},  {"uint", Type::u32},  {"uint32", Type::u32},
+        {"float", Type::f32},  {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
+    for (const auto& [name, type] : kTypes) {
+      if (word == name) return type;
+    }
+    reject("unknown property type", "header", excerpt(word), "one of PLY's types");
+  }
+
+  Property read_property(std::string_view line) const {
+    const std::string_view word = take_word(line);
+    Property property;
+    property.is_list = word == "list";
+    if (property.is_list) {
+      property.count_type = read_type(take_word(line));
+      property.type = read_type(take_word(line));
+    } else {
+      property.type = read_type(word);
+    }
+    property.name = take_word(line);
+    return property;
+  }
+
+  // Every property takes at least its binary size, or a digit and a separator, in what is left.
+  void check_count(const Element& element) const {
+    std::size_t least = 0;
+    for (const Property& property : element.properties) {
+      const Type first = property.is_list ? property.count_type : property.type;
+      least += format_ == Format::ascii ? 2 : size_of(first);
+    }
+    // The last separator of an ASCII file may be missing.
+    if (least == 0 || element.count > (rest_.size() + 1) / least) {
+      reject("the file is too small for its header", "element " + excerpt(element.name),
+             std::to_string(element.count) + " elements in " + std::to_string(rest_.size()) +
+                 " bytes",
+             "at least " + std::to_string(least) + " bytes for each");
+    }
+    if (element.count >= std::numeric_limits<std::uint32_t>::max()) {
+      reject("too many elements", "element " + excerpt(element.name), std::to_string(element.count),
+             "fewer than 2^32 - 1");
+    }
+  }
+
+  double read_ascii_number(const Element& element, std::size_t i) {
+    std::size_t begin = 0;
+    while (begin < rest_.size() && static_cast<unsigned char>(rest_[begin]) <= ' ') ++begin;
+    std::size_t end = begin;
+    while (end < rest_.size() && static_cast<unsigned char>(rest_[end]) > ' ') ++end;
+    const std::string_view word = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    if (const auto integer = to_integer(word)) return static_cast<double>(*integer);
+    const auto value = to_float(word);
+    if (!value) {
+      reject(word.empty() ? "the file is truncated" : "bad number", label(element, i),
+             excerpt(word), "a number");
+    }
+    return *value;
+  }
+
+  template <class T>
+  double take_binary() {
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), rest_.data(), sizeof(T));
+    rest_.remove_prefix(sizeof(T));
+    if (format_ == Format::big_endian) std::reverse(bytes.begin(), bytes.end());
+    return static_cast<double>(std::bit_cast<T>(bytes));
+  }
+
+  double read_number(Type type, const Element& element, std::size_t i) {
+    if (format_ == Format::ascii) return read_ascii_number(element, i);
+    if (rest_.size() < size_of(type)) reject("the file is truncated", label(element, i));
+    switch (type) {
+      case Type::i8:
+        return take_binary<std::int8_t>();
+      case Type::u8:
+        return take_binary<std::uint8_t>();
+      case Type::i16:
+        return take_binary<std::int16_t>();
+      case Type::u16:
+        return take_binary<std::uint16_t>();
+      case Type::i32:
+        return take_binary<std::int32_t>();
+      case Type::u32:
+        return take_binary<std::uint32_t>();
+      case Type::f32:
+        return take_binary<float>();
+      default:
+        return take_binary<double>();
+    }
+  }
+
+  static std::string label(const Element& element, std::size_t i) {
+    return element.name + " " + std::to_string(i);
+  }
+
+  std::size_t read_list_count(const Property& property, const Element& element, std::size_t i) {
+    const double count = read_number(property.count_type, element, i);
+    const std::size_t least = format_ == Format::ascii ? 2 : size_of(property.type);
+    if (!(count >= 0.0) || count > static_cast<double>((rest_.size() + 1) / least)) {
+      reject("the file is truncated", label(element, i), std::to_string(count) + " list entries");
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  void read_vertices(const Element& element) {
+    const auto column = [&](const char* name) {
+      const auto found = std::find_if(element.properties.begin(), element.properties.end(),
+                                      [&](const Property& p) { return p.name == name; });
+      return static_cast<std::size_t>(found - element.properties.begin());
+    };
+    const std::size_t none = element.properties.size();
+    const auto has = [&](std::initializer_list<const char*> names) {
+      return std::all_of(names.begin(), names.end(), [&](auto n) { return column(n) != none; });
+    };
+    if (!has({"x", "y", "z"})) reject("vertices without x, y, z", "header");
+    const bool normals = has({"nx", "ny", "nz"}), colors = has({"red", "green", "blue"});
+    const char* u = has({"s", "t"}) ? "s" : "u";
+    const char* v = has({"s", "t"}) ? "t" : "v";
+    const bool texcoords = has({u, v});
+    const auto color_scale = [&](std::size_t c) {
+      const Type type = element.properties[c].type;
+      return type == Type::u8 ? 1.0f / 255.0f : type == Type::u16 ? 1.0f / 65535.0f : 1.0f;
+    };
+    std::vector<float> row(none);
+    const auto at = [&](const char* name) { return row[column(name)]; };
+    for (std::size_t i = 0; i < element.count; ++i) {
+      read_row(element, i, row);
+      mesh_.positions.emplace_back(at("x"), at("y"), at("z"));
+      if (normals) mesh_.normals.emplace_back(at("nx"), at("ny"), at("nz"));
+      if (texcoords) mesh_.texcoords.emplace_back(at(u), 1.0f - at(v));
+      if (colors) {
+        mesh_.colors.emplace_back(at("red") * color_scale(column("red")),
+                                  at("green") * color_scale(column("green")),
+                                  at("blue") * color_scale(column("blue")), 1.0f);
+      }
+    }
+  }
+
+  void read_row(const Element& element, std::size_t i, std::vector<float>& row) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const Property& property = element.properties[p];
+      if (!property.is_list) {
+        row[p] = static_cast<float>(read_number(property.type, element, i));
+        continue;
+      }
+      for (std::size_t n = read_list_count(property, element, i); n > 0; --n) {
+        read_number(property.type, element, i);
+      }
+    }
+  }
+
+  void read_others(const Element& element) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (const Property& property : element.properties) {
+        const bool is_face = property.is_list && element.name == "face" &&
+                             (property.name == "vertex_indices" || property.name == "vertex_index");
+        if (is_face) {
+          read_face(property, element, i);
+          continue;
+        }
+        std::size_t n = property.is_list ? read_list_count(property, element, i) : 1;
+        for (; n > 0; --n) read_number(property.type, element, i);
+      }
+    }
+  }
+
+  void read_face(const Property& property, const Element& element, std::size_t i) {
+    const std::size_t count = read_list_count(property, element, i);
+    std::array<std::uint32_t, 3> fan{};
+    for (std::size_t k = 0; k < count; ++k) {
+      const double index = read_number(property.type, element, i);
+      if (!(index >= 0.0 && index < std::numeric_limits<std::uint32_t>::max())) {
+        reject("bad vertex index", label(element, i), std::to_string(index));
+      }
+      fan[std::min<std::size_t>(k, 2)] = static_cast<std::uint32_t>(index);
+      if (k < 2) continue;
+      mesh_.indices.insert(mesh_.indices.end(), fan.begin(), fan.end());
+      fan[1] = fan[2];
+    }
+  }
+
+  void check_indices() const {
+    for (std::size_t i = 0; i < mesh_.indices.size(); ++i) {
+      if (mesh_.indices[i] < mesh_.vertex_count()) continue;
+      reject("vertex index past the end", "triangle " + std::to_string(i / 3),
+             std::to_string(mesh_.indices[i]),
+             "less than " + std::to_string(mesh_.vertex_count()));
+    }
+  }
+
+  std::string_view rest_;
+  const std::filesystem::path& path_;
+  Format format_ = Format::ascii;
+  std::vector<Element> elements_;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh read_ply(std::string_view bytes, const std::filesystem::path& path) {
+  return PlyReader(bytes, path).read();
+}
+
+}  // namespace prt::mesh

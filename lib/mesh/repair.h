@@ -1,0 +1,48 @@
+// Makes a triangle mesh that baking can trust out of whatever a file held: indices in range, finite
+// vertices, no degenerate or double triangles, every vertex used, unit normals.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+
+namespace prt::mesh {
+
+struct RepairOptions {
+  bool weld = true;  ///< merge vertices whose attributes are all equal, bit for bit
+  /// Where normals have to be computed: an edge whose faces' normals differ by more stays hard.
+  /// 180: everything smooth.
+  float crease_angle_degrees = 180.0f;
+  bool recompute_normals = false;  ///< even where the file has good ones
+};
+
+/// What was found and done; counts add up over the meshes of a file.
+struct RepairReport {
+  std::size_t welded_vertex_count = 0;
+  std::size_t nonfinite_vertex_count = 0;       ///< dropped, with their triangles
+  std::size_t unreferenced_vertex_count = 0;    ///< dropped
+  std::size_t degenerate_triangle_count = 0;    ///< dropped: no area
+  std::size_t duplicate_triangle_count = 0;     ///< dropped: the same three vertices, same side
+  std::size_t nonfinite_triangle_count = 0;     ///< dropped with a vertex
+  std::size_t computed_normal_count = 0;        ///< vertices whose normal was computed
+  std::size_t nonmanifold_triangle_count = 0;   ///< kept: more than two faces at an edge
+  std::size_t nonmanifold_vertex_count = 0;     ///< kept: bow ties
+  std::size_t boundary_edge_count = 0;          ///< edges of one face
+
+  void add(const RepairReport& other);
+  bool dropped_anything() const;
+};
+
+/// Repairs in place. source[i] is the vertex of the input that vertex i of the result came from.
+/// Precondition: indices < vertex count, attributes empty or of vertex count length. The result may
+/// be empty: what that means is the caller's to say.
+std::vector<std::uint32_t> repair(TriangleMesh& mesh, const RepairOptions& options,
+                                  RepairReport& report);
+
+/// Vertices of `mesh` rearranged to those of `source`; indices are left alone.
+void gather_vertices(TriangleMesh& mesh, const std::vector<std::uint32_t>& source);
+
+}  // namespace prt::mesh

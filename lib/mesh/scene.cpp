@@ -1,0 +1,122 @@
+#include "mesh/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hash.h"
+
+namespace prt::mesh {
+
+namespace {
+
+int wrap_texel(int i, int size, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::clamp:
+      return std::clamp(i, 0, size - 1);
+    case Wrap::mirror: {
+      const int period = ((i % (2 * size)) + 2 * size) % (2 * size);
+      return period < size ? period : 2 * size - 1 - period;
+    }
+    default:
+      return ((i % size) + size) % size;
+  }
+}
+
+// Keeps the texel number of absurd coordinates inside an int; any whole number of mirror periods
+// may be dropped.
+float reduced(float coordinate, Wrap wrap) {
+  if (!std::isfinite(coordinate)) return 0.0f;
+  return wrap == Wrap::clamp ? std::clamp(coordinate, -1.0f, 2.0f) : std::fmod(coordinate, 2.0f);
+}
+
+Vec3 texel(const image::Image& image, int x, int y) {
+  const float* p = image.at(x, y);
+  return image.channel_count >= 3 ? Vec3(p[0], p[1], p[2]) : Vec3(p[0]);
+}
+
+// Texel centres are at (i + 1/2) / size, as in OpenGL.
+Vec3 sample_bilinear(const image::Image& image, const Vec2& texcoord, Wrap wrap_s, Wrap wrap_t) {
+  const float x = reduced(texcoord.x, wrap_s) * static_cast<float>(image.width) - 0.5f;
+  const float y = reduced(texcoord.y, wrap_t) * static_cast<float>(image.height) - 0.5f;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
+  const int xs[2] = {wrap_texel(x0, image.width, wrap_s), wrap_texel(x0 + 1, image.width, wrap_s)};
+  const int ys[2] = {wrap_texel(y0, image.height, wrap_t),
+                     wrap_texel(y0 + 1, image.height, wrap_t)};
+  const Vec3 upper = texel(image, xs[0], ys[0]) * (1 - fx) + texel(image, xs[1], ys[0]) * fx;
+  const Vec3 lower = texel(image, xs[0], ys[1]) * (1 - fx) + texel(image, xs[1], ys[1]) * fx;
+  return upper * (1 - fy) + lower * fy;
+}
+
+template <class T>
+T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& corners, float u,
+              float v, const T& absent) {
+  if (values.empty()) return absent;
+  return values[corners[0]] * (1 - u - v) + values[corners[1]] * u + values[corners[2]] * v;
+}
+
+}  // namespace
+
+std::size_t Scene::vertex_count() const {
+  std::size_t count = 0;
+  for (const Primitive& primitive : primitives) count += primitive.mesh.vertex_count();
+  return count;
+}
+
+std::size_t Scene::triangle_count() const {
+  std::size_t count = 0;
+  for (const Primitive& primitive : primitives) count += primitive.mesh.triangle_count();
+  return count;
+}
+
+std::vector<std::size_t> Scene::vertex_offsets() const {
+  std::vector<std::size_t> offsets{0};
+  for (const Primitive& primitive : primitives) {
+    offsets.push_back(offsets.back() + primitive.mesh.vertex_count());
+  }
+  return offsets;
+}
+
+Vec3 albedo_at(const Scene& scene, const Primitive& primitive, const Vec2& texcoord,
+               const Vec4& color) {
+  Vec3 albedo(color.x, color.y, color.z);
+  if (primitive.material >= 0) {
+    const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+    albedo *= Vec3(material.base_color.x, material.base_color.y, material.base_color.z);
+    if (material.base_color_image >= 0) {
+      albedo *= sample_bilinear(scene.images[static_cast<std::size_t>(material.base_color_image)],
+                                texcoord, material.wrap_s, material.wrap_t);
+    }
+  }
+  for (int c = 0; c < 3; ++c) albedo[c] = std::clamp(albedo[c], 0.0f, 1.0f);
+  return albedo;
+}
+
+Vec3 albedo_at_vertex(const Scene& scene, const Primitive& primitive, std::size_t vertex) {
+  const TriangleMesh& mesh = primitive.mesh;
+  return albedo_at(scene, primitive, mesh.texcoords.empty() ? Vec2(0.0f) : mesh.texcoords[vertex],
+                   mesh.colors.empty() ? Vec4(1.0f) : mesh.colors[vertex]);
+}
+
+Vec3 albedo_at_point(const Scene& scene, const Primitive& primitive, std::size_t triangle, float u,
+                     float v) {
+  const TriangleMesh& mesh = primitive.mesh;
+  const auto corners = mesh.triangle(triangle);
+  return albedo_at(scene, primitive, interpolate(mesh.texcoords, corners, u, v, Vec2(0.0f)),
+                   interpolate(mesh.colors, corners, u, v, Vec4(1.0f)));
+}
+
+std::string mesh_hash(const Scene& scene) {
+  Hasher hasher;
+  for (const Primitive& primitive : scene.primitives) {
+    const TriangleMesh& mesh = primitive.mesh;
+    const std::uint64_t counts[2] = {mesh.vertex_count(), mesh.triangle_count()};
+    hasher.add(std::span<const std::uint64_t>(counts));
+    hasher.add(std::span<const Vec3>(mesh.positions));
+    hasher.add(std::span<const Vec3>(mesh.normals));
+    hasher.add(std::span<const std::uint32_t>(mesh.indices));
+  }
+  return hasher.hex();
+}
+
+}  // namespace prt::mesh
