@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "gltf/precomputed_transfer.h"
 #include "mesh/scene.h"
@@ -24,6 +26,9 @@ class Document {
   /// Reads .glb or .gltf; buffers and images are loaded from data URIs and from files beside it (no
   /// absolute path, no "..", no scheme). Throws Error (bad_input).
   static Document load(const std::filesystem::path& path, const Limits& limits = {});
+  /// The same of bytes in memory; `path` is for messages and for the files it refers to.
+  static Document parse(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                        const Limits& limits = {});
 
   /// A new document with one node and mesh for each primitive of the scene.
   static Document from_scene(const mesh::Scene& scene);
@@ -41,12 +46,16 @@ class Document {
   std::optional<PrecomputedTransfer> precomputed_transfer() const;
   /// Adds or replaces it.
   void set_precomputed_transfer(const PrecomputedTransfer& transfer);
+  void remove_precomputed_transfer();
 
   /// Writes .glb, everything embedded, atomically.
   void save_glb(const std::filesystem::path& path, bool no_clobber = false) const;
+  /// What save_glb writes: the same document gives the same bytes.
+  std::vector<std::byte> glb_bytes() const;
+
+  struct State;  ///< private to lib/gltf
 
  private:
-  struct State;
   explicit Document(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

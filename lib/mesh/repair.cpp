@@ -101,7 +101,9 @@ std::vector<std::uint32_t> complete_normals(TriangleMesh& mesh, const RepairOpti
   std::vector<std::uint32_t> same(mesh.vertex_count());
   for (std::uint32_t i = 0; i < same.size(); ++i) same[i] = i;
   if (!std::all_of(mesh.normals.begin(), mesh.normals.end(), is_good_normal)) {
-    TriangleMesh smooth{.positions = mesh.positions, .indices = mesh.indices};
+    TriangleMesh smooth;
+    smooth.positions = mesh.positions;
+    smooth.indices = mesh.indices;
     compute_normals(smooth, 180.0f);
     for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
       if (is_good_normal(mesh.normals[i])) continue;

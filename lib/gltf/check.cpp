@@ -1,0 +1,220 @@
+#include "gltf/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/checked.h"
+#include "core/error.h"
+#include "gltf/accessor.h"
+
+namespace prt::gltf {
+
+namespace {
+
+// An accessor without a view is all zeros: nothing in the file bounds its count.
+constexpr std::size_t kMaxZeroCount = std::size_t{1} << 24;
+
+constexpr const char* kArrays[] = {"accessors", "animations", "buffers",  "bufferViews",
+                                   "cameras",   "images",     "materials", "meshes",
+                                   "nodes",     "samplers",   "scenes",   "skins",
+                                   "textures"};
+
+constexpr const char* kSupportedRequired[] = {
+    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
+    "EXT_texture_webp",      "KHR_texture_basisu",    "KHR_animation_pointer"};
+
+[[noreturn]] void reject(const Where& where, const std::string& what, const std::string& found = {},
+                         const std::string& expected = {}, const std::string& advice = {}) {
+  throw_bad_input(what, {.file = where.file,
+                         .element = where.element,
+                         .found = found,
+                         .expected = expected,
+                         .advice = advice});
+}
+
+void check_arrays(const State& state) {
+  for (const char* name : kArrays) {
+    const Json* array = find(state.root, name);
+    if (!array) continue;
+    if (!array->is_array()) reject({state.file, name}, "not an array", array->type_name());
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      if (!(*array)[i].is_object()) reject({state.file, name}, "not an object");
+    }
+  }
+  const Where asset{state.file, "asset"};
+  const Json* version = find(state.root, "asset");
+  if (!version || !optional_string(*version, "version", asset).starts_with("2.")) {
+    reject(asset, "not glTF 2.0");
+  }
+}
+
+void check_required_extensions(const State& state) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    const Json& names = array_of(state.root, list);
+    const Where where{state.file, list};
+    if (!names.is_array()) reject(where, "not an array");
+    for (const Json& name : names) {
+      if (!name.is_string()) reject(where, "not a string");
+    }
+  }
+  for (const Json& json : array_of(state.root, "extensionsRequired")) {
+    const auto name = json.get<std::string>();
+    const bool known = name.starts_with("KHR_materials_") ||
+                       std::find(std::begin(kSupportedRequired), std::end(kSupportedRequired),
+                                 name) != std::end(kSupportedRequired);
+    if (!known) {
+      reject({state.file, "extensionsRequired"}, "unsupported extension", name, {},
+             "Export the file without it, or uncompressed.");
+    }
+  }
+}
+
+void check_views(const State& state) {
+  const Json& views = array_of(state.root, "bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Where where = state.where("bufferView", i);
+    const std::size_t buffer = required_index(views[i], "buffer", state.buffers.size(), where);
+    const std::size_t offset = optional_count(views[i], "byteOffset", 0, where);
+    const std::size_t length = required_count(views[i], "byteLength", where);
+    const std::size_t stride = optional_count(views[i], "byteStride", 4, where);
+    if (checked_add(offset, length) > state.buffers[buffer].size()) {
+      reject(where, "runs past the end of its buffer", fmt::format("{} + {} bytes", offset, length),
+             fmt::format("at most {}", state.buffers[buffer].size()));
+    }
+    if (stride < 4 || stride > 252 || stride % 4 != 0) {
+      reject(where, "bad stride", std::to_string(stride), "a multiple of 4 from 4 to 252");
+    }
+  }
+}
+
+// `count` elements of `size` bytes must lie within the view, aligned to their components.
+void check_range(const State& state, const Json& source, std::size_t count, std::size_t size,
+                 std::size_t component, const Where& where) {
+  const std::size_t index =
+      required_index(source, "bufferView", state.count("bufferViews"), where);
+  const Json& view = state.element("bufferViews", index);
+  const std::size_t stride = view.value("byteStride", size);
+  const std::size_t offset = optional_count(source, "byteOffset", 0, where);
+  const std::size_t length = view["byteLength"].get<std::size_t>();
+  if (stride < size) {
+    reject(where, "elements larger than the stride of their view", std::to_string(size),
+           fmt::format("at most {} bytes", stride));
+  }
+  const std::size_t end =
+      count == 0 ? offset
+                 : checked_add(offset, checked_add(checked_multiply(count - 1, stride), size));
+  if (end > length) {
+    reject(where, "runs past the end of its buffer view", fmt::format("{} bytes", end),
+           fmt::format("at most {}", length));
+  }
+  if ((offset + view.value("byteOffset", std::size_t{0})) % component != 0) {
+    reject(where, "not aligned to its components", fmt::format("offset {}", offset),
+           fmt::format("a multiple of {} bytes", component));
+  }
+}
+
+void check_sparse(const State& state, const Json& accessor, std::size_t size,
+                  std::size_t component, const Where& where) {
+  const Json* sparse = find(accessor, "sparse");
+  if (!sparse) return;
+  const std::size_t count = required_count(*sparse, "count", where);
+  const Json *indices = find(*sparse, "indices"), *values = find(*sparse, "values");
+  if (!indices || !values) reject(where, "sparse without indices or values");
+  if (count > accessor["count"].get<std::size_t>()) {
+    reject(where, "more sparse elements than elements", std::to_string(count));
+  }
+  const std::size_t type = required_count(*indices, "componentType", where);
+  if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
+    reject(where, "bad type of sparse indices", std::to_string(type));
+  }
+  check_range(state, *indices, count, component_bytes(type), component_bytes(type), where);
+  check_range(state, *values, count, size, component, where);
+}
+
+void check_accessors(const State& state) {
+  const Json& accessors = array_of(state.root, "accessors");
+  for (std::size_t i = 0; i < accessors.size(); ++i) {
+    const Json& accessor = accessors[i];
+    const Where where = state.where("accessor", i);
+    const std::size_t count = required_count(accessor, "count", where);
+    const std::size_t component =
+        component_bytes(required_count(accessor, "componentType", where));
+    const std::string type = optional_string(accessor, "type", where);
+    if (component == 0) reject(where, "unknown component type");
+    if (components_of(type) == 0) reject(where, "unknown type", type);
+    optional_bool(accessor, "normalized", where);
+    const std::size_t size = element_bytes(accessor);
+    if (accessor.contains("bufferView")) {
+      check_range(state, accessor, count, size, component, where);
+    } else if (count > kMaxZeroCount) {
+      reject(where, "too many elements without data", std::to_string(count),
+             fmt::format("at most {}", kMaxZeroCount));
+    }
+    check_sparse(state, accessor, size, component, where);
+  }
+}
+
+void check_attributes(const State& state, const Json& attributes, std::optional<std::size_t> count,
+                      const Where& where) {
+  if (!attributes.is_object()) reject(where, "attributes are no object");
+  for (const auto& [name, value] : attributes.items()) {
+    const std::size_t accessor =
+        required_index(attributes, name.c_str(), state.count("accessors"), where);
+    if (!count) count = accessor_count(state, accessor);
+    if (accessor_count(state, accessor) != *count) {
+      reject(where, "attributes of different length", name, std::to_string(*count) + " elements");
+    }
+  }
+}
+
+void check_primitive(const State& state, const Json& primitive, const Where& where) {
+  if (!primitive.is_object()) reject(where, "not an object");
+  const Json* attributes = find(primitive, "attributes");
+  if (!attributes || !attributes->is_object()) reject(where, "no attributes");
+  check_attributes(state, *attributes, std::nullopt, where);
+  optional_index(primitive, "indices", state.count("accessors"), where);
+  optional_index(primitive, "material", state.count("materials"), where);
+  optional_index(primitive, "mode", 7, where);
+  const Json& targets = array_of(primitive, "targets");
+  if (!targets.is_array()) reject(where, "targets are no array");
+  std::optional<std::size_t> count;
+  if (!attributes->empty()) count = accessor_count(state, attributes->begin()->get<std::size_t>());
+  for (const Json& target : targets) check_attributes(state, target, count, where);
+}
+
+void check_meshes(const State& state) {
+  const Json& meshes = array_of(state.root, "meshes");
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const Json* primitives = find(meshes[m], "primitives");
+    const Where where = state.where("mesh", m);
+    if (!primitives || !primitives->is_array()) reject(where, "no primitives");
+    for (std::size_t p = 0; p < primitives->size(); ++p) {
+      check_primitive(state, (*primitives)[p],
+                      {state.file, fmt::format("mesh {}: primitive {}", m, p)});
+    }
+  }
+}
+
+void check_images(const State& state) {
+  const Json& images = array_of(state.root, "images");
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    required_index(images[i], "bufferView", state.count("bufferViews"), state.where("image", i));
+  }
+}
+
+}  // namespace
+
+void check_document(const State& state) {
+  check_arrays(state);
+  check_required_extensions(state);
+  check_views(state);
+  check_accessors(state);
+  check_meshes(state);
+  check_images(state);
+  check_nodes(state);
+}
+
+}  // namespace prt::gltf

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "gltf/check.h"
+
+namespace prt::gltf {
+
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+// Node numbers of an array of them.
+std::vector<std::size_t> read_nodes(const State& state, const Json& object, const char* key,
+                                    const Where& where) {
+  std::vector<std::size_t> nodes;
+  const Json* array = find(object, key);
+  if (!array) return nodes;
+  const std::size_t count = state.count("nodes");
+  const auto valid = [&](const Json& node) {
+    return node.is_number_unsigned() && node.get<std::size_t>() < count;
+  };
+  if (!array->is_array() || !std::all_of(array->begin(), array->end(), valid)) {
+    throw_bad_input(fmt::format("bad \"{}\"", key),
+                    {.file = where.file,
+                     .element = where.element,
+                     .expected = fmt::format("an array of numbers less than {}", count)});
+  }
+  for (const Json& node : *array) nodes.push_back(node.get<std::size_t>());
+  return nodes;
+}
+
+}  // namespace
+
+void check_nodes(const State& state) {
+  const std::size_t count = state.count("nodes");
+  std::vector<std::size_t> parent(count, kNone);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Where where = state.where("node", i);
+    const Json& node = state.element("nodes", i);
+    optional_index(node, "mesh", state.count("meshes"), where);
+    for (const std::size_t child : read_nodes(state, node, "children", where)) {
+      if (parent[child] != kNone) {
+        throw_bad_input("a node with two parents",
+                        {.file = state.file,
+                         .element = fmt::format("node {}", child),
+                         .found = fmt::format("nodes {} and {}", parent[child], i)});
+      }
+      parent[child] = i;
+    }
+  }
+  // Depth of each node by walking up; a walk longer than the limit is a cycle or too deep.
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t depth = 0;
+    for (std::size_t node = i; parent[node] != kNone; node = parent[node]) {
+      if (++depth > state.limits.max_node_depth) {
+        throw_bad_input("node cycle, or nodes nested too deeply",
+                        {.file = state.file,
+                         .element = fmt::format("node {}", i),
+                         .expected = fmt::format("at most {} ancestors and none of them itself",
+                                                 state.limits.max_node_depth)});
+      }
+    }
+  }
+  for (std::size_t i = 0; i < state.count("scenes"); ++i) {
+    read_nodes(state, state.element("scenes", i), "nodes", state.where("scene", i));
+  }
+  if (state.count("scenes") > 0) {
+    optional_index(state.root, "scene", state.count("scenes"), {state.file, "default scene"});
+  }
+}
+
+}  // namespace prt::gltf

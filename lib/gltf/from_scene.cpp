@@ -1,0 +1,79 @@
+// Document::from_scene: a new file of a scene that came from elsewhere.
+#include "gltf/accessor.h"
+#include "gltf/geometry.h"
+#include "gltf/png.h"
+#include "gltf/state.h"
+
+namespace prt::gltf {
+
+namespace {
+
+int wrap_code(mesh::Wrap wrap) {
+  switch (wrap) {
+    case mesh::Wrap::clamp:
+      return 33071;
+    case mesh::Wrap::mirror:
+      return 33648;
+    default:
+      return 10497;
+  }
+}
+
+void add_images(State& state, const mesh::Scene& scene) {
+  for (const image::Image& image : scene.images) {
+    const std::size_t view = add_view(state, encode_png(image));
+    make_array(state.root, "images").push_back({{"mimeType", "image/png"}, {"bufferView", view}});
+  }
+}
+
+Json make_material(State& state, const mesh::Material& material) {
+  Json pbr{{"baseColorFactor", {material.base_color.x, material.base_color.y, material.base_color.z,
+                                material.base_color.w}},
+           {"metallicFactor", 0},
+           {"roughnessFactor", 1}};
+  if (material.base_color_image >= 0) {
+    Json& samplers = make_array(state.root, "samplers");
+    Json& textures = make_array(state.root, "textures");
+    samplers.push_back(
+        {{"wrapS", wrap_code(material.wrap_s)}, {"wrapT", wrap_code(material.wrap_t)}});
+    textures.push_back({{"sampler", samplers.size() - 1}, {"source", material.base_color_image}});
+    pbr["baseColorTexture"] = {{"index", textures.size() - 1}};
+  }
+  Json json = Json::object();
+  if (!material.name.empty()) json["name"] = material.name;
+  json["pbrMetallicRoughness"] = std::move(pbr);
+  if (material.double_sided) json["doubleSided"] = true;
+  return json;
+}
+
+void add_primitive(State& state, const mesh::Primitive& primitive) {
+  Json json{{"attributes", Json::object()}};
+  write_geometry(state, json, primitive.mesh);
+  if (primitive.material >= 0) json["material"] = primitive.material;
+  Json& meshes = make_array(state.root, "meshes");
+  Json& nodes = make_array(state.root, "nodes");
+  Json node{{"mesh", meshes.size()}};
+  Json mesh{{"primitives", Json::array({std::move(json)})}};
+  if (!primitive.name.empty()) node["name"] = mesh["name"] = primitive.name;
+  state.root["scenes"][0]["nodes"].push_back(nodes.size());
+  meshes.push_back(std::move(mesh));
+  nodes.push_back(std::move(node));
+}
+
+}  // namespace
+
+Document Document::from_scene(const mesh::Scene& scene) {
+  auto state = std::make_unique<State>();
+  state->root["asset"] = {{"version", "2.0"}};
+  state->root["scene"] = 0;
+  state->root["scenes"] = Json::array({{{"nodes", Json::array()}}});
+  for (const mesh::Primitive& primitive : scene.primitives) add_primitive(*state, primitive);
+  add_images(*state, scene);
+  for (const mesh::Material& material : scene.materials) {
+    Json json = make_material(*state, material);
+    make_array(state->root, "materials").push_back(std::move(json));
+  }
+  return Document(std::move(state));
+}
+
+}  // namespace prt::gltf

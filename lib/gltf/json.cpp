@@ -1,0 +1,109 @@
+#include "gltf/json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace prt::gltf {
+
+namespace {
+
+[[noreturn]] void reject(const char* key, const Where& where, const std::string& found,
+                         const std::string& expected) {
+  throw_bad_input(fmt::format("bad \"{}\"", key), {.file = where.file,
+                                                   .element = where.element,
+                                                   .found = found,
+                                                   .expected = expected});
+}
+
+}  // namespace
+
+const Json* find(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
+std::size_t optional_count(const Json& object, const char* key, std::size_t absent,
+                           const Where& where) {
+  const Json* value = find(object, key);
+  if (!value) return absent;
+  if (!value->is_number_unsigned()) {
+    reject(key, where, value->type_name(), "an integer, 0 or more");
+  }
+  return value->get<std::size_t>();
+}
+
+std::size_t required_count(const Json& object, const char* key, const Where& where) {
+  if (!find(object, key)) reject(key, where, "nothing", "an integer, 0 or more");
+  return optional_count(object, key, 0, where);
+}
+
+std::string optional_string(const Json& object, const char* key, const Where& where) {
+  const Json* value = find(object, key);
+  if (!value) return {};
+  if (!value->is_string()) reject(key, where, value->type_name(), "a string");
+  return value->get<std::string>();
+}
+
+bool optional_bool(const Json& object, const char* key, const Where& where) {
+  const Json* value = find(object, key);
+  if (!value) return false;
+  if (!value->is_boolean()) reject(key, where, value->type_name(), "true or false");
+  return value->get<bool>();
+}
+
+std::optional<std::size_t> optional_index(const Json& object, const char* key, std::size_t limit,
+                                          const Where& where) {
+  if (!find(object, key)) return std::nullopt;
+  return required_index(object, key, limit, where);
+}
+
+std::size_t required_index(const Json& object, const char* key, std::size_t limit,
+                           const Where& where) {
+  const std::size_t index = required_count(object, key, where);
+  if (index >= limit) {
+    reject(key, where, std::to_string(index), fmt::format("less than {}", limit));
+  }
+  return index;
+}
+
+bool read_numbers(const Json& object, const char* key, std::size_t count, float* numbers,
+                  const Where& where) {
+  const Json* values = find(object, key);
+  if (!values) return false;
+  const std::string expected = fmt::format("{} finite numbers", count);
+  if (!values->is_array() || values->size() != count) {
+    reject(key, where, values->type_name(), expected);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Json& value = (*values)[i];
+    if (!value.is_number()) reject(key, where, value.type_name(), expected);
+    const double number = value.get<double>();
+    if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
+      reject(key, where, std::to_string(number), expected);
+    }
+    numbers[i] = static_cast<float>(number);
+  }
+  return true;
+}
+
+const Json& array_of(const Json& root, const char* name) {
+  static const Json empty = Json::array();
+  const Json* found = find(root, name);
+  return found ? *found : empty;
+}
+
+Json& make_array(Json& root, const char* name) {
+  if (!root.contains(name)) root[name] = Json::array();
+  return root[name];
+}
+
+Json& make_object(Json& parent, const char* name) {
+  if (!parent.contains(name)) parent[name] = Json::object();
+  return parent[name];
+}
+
+}  // namespace prt::gltf

@@ -1,0 +1,42 @@
+// glTF's JSON and how its fields are read: every access names the element and checks the type.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace prt::gltf {
+
+/// Keeps the order of keys, so that a file changes no more than it has to.
+using Json = nlohmann::ordered_json;
+
+/// For messages: the file, and "accessor 3".
+struct Where {
+  const std::string& file;
+  std::string element;
+};
+
+/// All throw Error (bad_input) when the field has another type or, in required_…, is missing.
+const Json* find(const Json& object, const char* key);
+std::size_t required_count(const Json& object, const char* key, const Where& where);
+std::size_t optional_count(const Json& object, const char* key, std::size_t absent,
+                           const Where& where);
+std::string optional_string(const Json& object, const char* key, const Where& where);
+bool optional_bool(const Json& object, const char* key, const Where& where);
+/// A number below `limit` that refers to an element of an array.
+std::optional<std::size_t> optional_index(const Json& object, const char* key, std::size_t limit,
+                                          const Where& where);
+std::size_t required_index(const Json& object, const char* key, std::size_t limit,
+                           const Where& where);
+/// An array of exactly `count` finite numbers; false when absent.
+bool read_numbers(const Json& object, const char* key, std::size_t count, float* numbers,
+                  const Where& where);
+
+/// Top-level array of that name, empty when absent.
+const Json& array_of(const Json& root, const char* name);
+/// The same, made when absent.
+Json& make_array(Json& root, const char* name);
+Json& make_object(Json& parent, const char* name);
+
+}  // namespace prt::gltf
