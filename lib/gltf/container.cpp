@@ -224,13 +224,14 @@ void load_container(State& state, std::span<const std::byte> bytes) {
   if (bytes.size() >= 4 && load_u32(bytes, 0) == kGlbMagic) chunks = split_glb(bytes, state.file);
   state.root = parse_json(
       {reinterpret_cast<const char*>(chunks.json.data()), chunks.json.size()}, state.file);
+  if (!state.root.is_object()) throw_bad_input("not a glTF file", {.file = state.file});
+  reserve_keys(state.root);
   for (const char* array : {"buffers", "bufferViews", "images"}) {
     const Json* found = find(state.root, array);
     if (found && !found->is_array()) {
       throw_bad_input("not an array", {.file = state.file, .element = array});
     }
   }
-  if (!state.root.is_object()) throw_bad_input("not a glTF file", {.file = state.file});
   Fetcher fetcher(state);
   load_buffers(state, chunks, fetcher);
   load_images(state, fetcher);
@@ -238,6 +239,7 @@ void load_container(State& state, std::span<const std::byte> bytes) {
 
 Bytes make_glb(const State& state) {
   Json root = state.root;
+  reserve_keys(root);
   make_object(root, "asset")["generator"] = "prtkit " PRTKIT_VERSION;
   root["asset"]["version"] = "2.0";
   Bytes bin = merge_buffers(state, root);

@@ -53,7 +53,8 @@ class Document {
   /// What save_glb writes: the same document gives the same bytes.
   std::vector<std::byte> glb_bytes() const;
 
-  struct State;  ///< private to lib/gltf
+  struct State;  ///< private to lib/gltf, as is its use
+  State* state() { return state_.get(); }
 
  private:
   explicit Document(std::unique_ptr<State> state);

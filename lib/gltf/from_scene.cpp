@@ -64,9 +64,11 @@ void add_primitive(State& state, const mesh::Primitive& primitive) {
 
 Document Document::from_scene(const mesh::Scene& scene) {
   auto state = std::make_unique<State>();
-  state->root["asset"] = {{"version", "2.0"}};
+  state->root = Json::object();
+  reserve_keys(state->root);
+  state->root["asset"]["version"] = "2.0";
   state->root["scene"] = 0;
-  state->root["scenes"] = Json::array({{{"nodes", Json::array()}}});
+  state->root["scenes"][0]["nodes"] = Json::array();
   for (const mesh::Primitive& primitive : scene.primitives) add_primitive(*state, primitive);
   add_images(*state, scene);
   for (const mesh::Material& material : scene.materials) {

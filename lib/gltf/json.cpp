@@ -30,7 +30,9 @@ std::size_t optional_count(const Json& object, const char* key, std::size_t abse
                            const Where& where) {
   const Json* value = find(object, key);
   if (!value) return absent;
-  if (!value->is_number_unsigned()) {
+  const bool count = value->is_number_unsigned() ||
+                     (value->is_number_integer() && value->get<std::int64_t>() >= 0);
+  if (!count) {
     reject(key, where, value->type_name(), "an integer, 0 or more");
   }
   return value->get<std::size_t>();
@@ -104,6 +106,11 @@ Json& make_array(Json& root, const char* name) {
 Json& make_object(Json& parent, const char* name) {
   if (!parent.contains(name)) parent[name] = Json::object();
   return parent[name];
+}
+
+void reserve_keys(Json& root) {
+  auto& members = root.get_ref<Json::object_t&>();
+  members.reserve(members.size() + 32);
 }
 
 }  // namespace prt::gltf

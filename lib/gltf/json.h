@@ -38,5 +38,8 @@ const Json& array_of(const Json& root, const char* name);
 /// The same, made when absent.
 Json& make_array(Json& root, const char* name);
 Json& make_object(Json& parent, const char* name);
+/// Makes room for the few keys that we may add to a document: until then, references to what is in
+/// it stay good (this JSON type keeps an object's members in a vector).
+void reserve_keys(Json& root);
 
 }  // namespace prt::gltf

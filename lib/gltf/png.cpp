@@ -1,9 +1,7 @@
 #include "gltf/png.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/error.h"
+#include "image/srgb.h"
 
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -17,14 +15,6 @@ namespace prt::gltf {
 
 namespace {
 
-unsigned char quantize(float value) {
-  return static_cast<unsigned char>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
-}
-
-float srgb_from_linear(float value) {
-  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
-}
-
 void append(void* context, void* data, int size) {
   auto& bytes = *static_cast<std::vector<std::byte>*>(context);
   const auto* begin = static_cast<const std::byte*>(data);
@@ -35,12 +25,7 @@ void append(void* context, void* data, int size) {
 
 std::vector<std::byte> encode_png(const image::Image& image) {
   const int channels = image.channel_count;
-  std::vector<unsigned char> pixels(image.pixels.size());
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const int channel = static_cast<int>(i % static_cast<std::size_t>(channels));
-    const bool alpha = channels % 2 == 0 && channel == channels - 1;
-    pixels[i] = quantize(alpha ? image.pixels[i] : srgb_from_linear(image.pixels[i]));
-  }
+  const std::vector<std::uint8_t> pixels = image::srgb8_from_linear(image);
   std::vector<std::byte> bytes;
   if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, channels, pixels.data(),
                               image.width * channels)) {

@@ -47,4 +47,7 @@ Json& primitive_of(State& state, const PrimitiveUse& use);
 constexpr std::size_t kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
 std::size_t primitive_mode(const State& state, const Json& primitive);
 
+/// Takes PRTKIT_precomputed_transfer out, everywhere.
+void remove_precomputed_transfer(State& state);
+
 }  // namespace prt::gltf

@@ -247,8 +247,8 @@ void Document::set_precomputed_transfer(const PrecomputedTransfer& transfer) {
   }
 }
 
-void Document::remove_precomputed_transfer() {
-  Json& root = state_->root;
+void remove_precomputed_transfer(State& state) {
+  Json& root = state.root;
   const auto remove_from = [](Json& object) {
     if (!extension_of(object)) return;
     object["extensions"].erase(kExtension);
@@ -259,8 +259,11 @@ void Document::remove_precomputed_transfer() {
     for (Json& mesh : root["meshes"]) {
       for (Json& primitive : mesh["primitives"]) {
         remove_from(primitive);
-        std::erase_if(primitive["attributes"].get_ref<Json::object_t&>(),
-                      [](const auto& item) { return item.first.starts_with("_PRT_"); });
+        Json kept = Json::object();
+        for (const auto& [name, accessor] : primitive["attributes"].items()) {
+          if (!name.starts_with("_PRT_")) kept[name] = accessor;
+        }
+        primitive["attributes"] = std::move(kept);
       }
     }
   }
@@ -268,5 +271,7 @@ void Document::remove_precomputed_transfer() {
   std::erase(root["extensionsUsed"].get_ref<Json::array_t&>(), Json(kExtension));
   if (root["extensionsUsed"].empty()) root.erase("extensionsUsed");
 }
+
+void Document::remove_precomputed_transfer() { gltf::remove_precomputed_transfer(*state_); }
 
 }  // namespace prt::gltf

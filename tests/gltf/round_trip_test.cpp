@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include "core/file.h"
+#include "gltf/document.h"
+#include "gltf/samples.h"
+
+namespace prt::gltf {
+namespace {
+
+void expect_same_mesh(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.tangents, b.tangents);
+  EXPECT_EQ(a.texcoords, b.texcoords);
+  EXPECT_EQ(a.colors, b.colors);
+  EXPECT_EQ(a.indices, b.indices);
+}
+
+TEST(GltfRoundTrip, SceneComesBackAsItWas) {
+  const samples::TemporaryFolder folder;
+  const mesh::Scene before = samples::scene();
+  Document::from_scene(before).save_glb(folder / "a.glb");
+  const mesh::Scene after = Document::load(folder / "a.glb").scene();
+
+  ASSERT_EQ(after.primitives.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    expect_same_mesh(before.primitives[i].mesh, after.primitives[i].mesh);
+    EXPECT_EQ(after.primitives[i].name, before.primitives[i].name);
+    EXPECT_EQ(after.primitives[i].material, before.primitives[i].material);
+  }
+  ASSERT_EQ(after.materials.size(), 2u);
+  EXPECT_EQ(after.materials[0].wrap_s, mesh::Wrap::clamp);
+  EXPECT_EQ(after.materials[0].wrap_t, mesh::Wrap::mirror);
+  EXPECT_EQ(after.materials[0].base_color_image, 0);
+  EXPECT_EQ(after.materials[1].base_color, before.materials[1].base_color);
+  EXPECT_TRUE(after.materials[1].double_sided);
+  ASSERT_EQ(after.images.size(), 1u);
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_NEAR(after.images[0].pixels[i], before.images[0].pixels[i], 1e-6f);
+  }
+  EXPECT_EQ(mesh::mesh_hash(after), mesh::mesh_hash(before));
+}
+
+TEST(GltfRoundTrip, TransferComesBackAsItWas) {
+  const samples::TemporaryFolder folder;
+  Document document = Document::from_scene(samples::scene());
+  const PrecomputedTransfer before = samples::transfer(6);
+  document.set_precomputed_transfer(before);
+  document.save_glb(folder / "a.glb");
+  const auto after = Document::load(folder / "a.glb").precomputed_transfer();
+
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->band_count, before.band_count);
+  EXPECT_EQ(after->row_count, before.row_count);
+  EXPECT_EQ(after->channel_count, before.channel_count);
+  EXPECT_EQ(after->brdf, before.brdf);
+  EXPECT_EQ(after->mesh_hash, before.mesh_hash);
+  EXPECT_EQ(after->encoding.point_count, 6u);
+  EXPECT_EQ(after->encoding.dimension, 27);
+  EXPECT_EQ(after->encoding.means, before.encoding.means);
+  EXPECT_EQ(after->encoding.bases, before.encoding.bases);
+  EXPECT_EQ(after->encoding.weights, before.encoding.weights);
+  EXPECT_EQ(after->encoding.cluster_of_point, before.encoding.cluster_of_point);
+}
+
+TEST(GltfRoundTrip, FileWithoutTransferHasNone) {
+  EXPECT_FALSE(Document::from_scene(samples::scene()).precomputed_transfer());
+}
+
+TEST(GltfRoundTrip, MeansAloneAreATransferToo) {
+  Document document = Document::from_scene(samples::scene());
+  document.set_precomputed_transfer(samples::transfer(6, 2, 0));
+  const auto after = document.precomputed_transfer();
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->encoding.component_count, 0);
+  EXPECT_TRUE(after->encoding.bases.empty());
+  EXPECT_TRUE(after->encoding.weights.empty());
+}
+
+TEST(GltfRoundTrip, SameDocumentGivesSameBytes) {
+  Document document = Document::from_scene(samples::scene());
+  document.set_precomputed_transfer(samples::transfer(6));
+  const auto bytes = document.glb_bytes();
+  EXPECT_EQ(Document::parse(bytes, "a.glb").glb_bytes(), bytes);
+}
+
+}  // namespace
+}  // namespace prt::gltf

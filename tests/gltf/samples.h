@@ -1,0 +1,32 @@
+// Small scenes and files for the tests of lib/gltf.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "gltf/document.h"
+
+namespace prt::gltf::samples {
+
+/// Two triangles with texture coordinates and colours, in two primitives of different materials,
+/// the first textured.
+mesh::Scene scene();
+
+/// A transfer of arbitrary numbers for `vertex_count` vertices.
+PrecomputedTransfer transfer(std::size_t vertex_count, int cluster_count = 3,
+                             int component_count = 5);
+
+/// A folder of this test's own, removed with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  /// Writes a file there and returns its path.
+  std::filesystem::path write(const std::string& name, const std::string& content) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace prt::gltf::samples
