@@ -31,8 +31,8 @@ Vec2 latlong_from_direction(const Vec3& direction) {
   return {0.5f - longitude / (2 * kPi), 0.5f - latitude / kPi};
 }
 
-Image read_environment(const std::filesystem::path& path) {
-  const Image read = read_image(path);
+Image read_environment(const std::filesystem::path& path, std::size_t max_pixels) {
+  const Image read = read_image(path, max_pixels);
   if (std::abs(read.width - 2 * read.height) > 1) {
     throw_bad_input("not a latitude-longitude map",
                     {.file = path.string(),

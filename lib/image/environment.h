@@ -20,7 +20,7 @@ Vec2 latlong_from_direction(const Vec3& direction);
 
 /// Three channels, finite, negative values (seen in compressed maps) clamped to 0 with a warning.
 /// Width must be twice the height within one texel. Throws Error (bad_input).
-Image read_environment(const std::filesystem::path& path);
+Image read_environment(const std::filesystem::path& path, std::size_t max_pixels = kMaxPixels);
 
 /// Bilinear radiance from a direction; wraps in longitude, clamps at the poles.
 Vec3 environment_radiance(const Image& environment, const Vec3& direction);

@@ -107,6 +107,13 @@ class Reader {
 Light read_light(const std::filesystem::path& path) { return Reader(path).read(); }
 
 void write_light(const std::filesystem::path& path, const Light& light, bool no_clobber) {
+  for (const auto& channel : light.coefficients) {
+    for (float value : channel) {
+      if (!std::isfinite(value)) {
+        throw_failed("a coefficient of the light is not finite", {.file = path.string()});
+      }
+    }
+  }
   std::string text = fmt::format("{{\n  \"prtkit_light\": {},\n  \"band_count\": {},\n", kVersion,
                                  light.band_count);
   text += fmt::format("  \"source\": {},\n  \"coefficients\": {{\n",

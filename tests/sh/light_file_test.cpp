@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -67,15 +68,20 @@ TEST_F(LightFile, ReadsTheExampleOfTheDocumentation) {
   ASSERT_NE(fence, std::string::npos);
   write(page.substr(fence + 8, page.find("```", fence + 8) - fence - 8));
   const Light light = read_light(path_);
-  // The numeric test vectors of the same page.
   ASSERT_EQ(light.band_count, 3);
-  const Vec3 up = light_radiance(light, {0, 1, 0}), side = light_radiance(light, {0.6f, 0, 0.8f});
-  for (const auto& [value, text] : {std::pair{up.x, "(0, 1, 0)"}, {side.x, "(0.6, 0, 0.8)"}}) {
-    const std::size_t row = page.find(std::string("| ") + text + " | ");
-    ASSERT_NE(row, std::string::npos) << text;
-    const std::size_t number = row + 5 + std::string(text).size();
-    EXPECT_NEAR(value, std::strtod(page.c_str() + number, nullptr), 1e-5) << text;
+  // The page's table of test vectors: | (x, y, z) | r | g | b |
+  int row_count = 0;
+  for (std::size_t row = page.find("| ("); row != std::string::npos;
+       row = page.find("| (", row + 1)) {
+    Vec3 d, expected;
+    ASSERT_EQ(std::sscanf(page.c_str() + row, "| (%f, %f, %f) | %f | %f | %f |", &d.x, &d.y, &d.z,
+                          &expected.x, &expected.y, &expected.z),
+              6);
+    const Vec3 radiance = light_radiance(light, d);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(radiance[c], expected[c], 2e-6f);
+    ++row_count;
   }
+  EXPECT_EQ(row_count, 5);
 }
 
 TEST_F(LightFile, AcceptsTheSmallestFile) {
