@@ -1,1 +1,77 @@
+// Draws a model under a light: the part that prt-render and prt-view share. Needs a current OpenGL
+// context, which must outlive it.
 #pragma once
+
+#include <memory>
+#include <optional>
+
+#include "camera/camera.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "image/image.h"
+#include "runtime/lighting.h"
+#include "runtime/model.h"
+
+namespace prt::runtime {
+
+/// How transfer is drawn: compressed in one call, compressed by clusters, or uncompressed.
+enum class Draw { single, clusters, uncompressed };
+/// What is shown: exit radiance, or two false-colour pictures of the compression.
+enum class Show { radiance, clusters, error };
+enum class Background { none, color, environment };
+
+struct View {
+  camera::Camera camera;
+  Draw draw = Draw::single;
+  Show show = Show::radiance;
+  Background background = Background::environment;
+  Vec3 background_color{0.0f, 0.0f, 0.0f};  ///< linear
+  float exposure = 0.0f;                    ///< stops, on screens and in 8-bit pictures
+};
+
+/// The relative error (runtime/model.h) that is shown red.
+constexpr float kErrorScale = 0.1f;
+
+class Renderer {
+ public:
+  Renderer();
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Takes the place of the model before; that one stays when this throws.
+  void set_model(const Model& model);
+  /// Light and background.
+  void set_lighting(const Lighting& lighting);
+  /// Turns light and background; the light of set_lighting is what is turned.
+  void set_light_rotation(const Matrix4& world_from_light);
+
+  bool can_draw(Draw draw, Show show) const;
+
+  /// Draws one frame into a float texture: linear radiance, premultiplied by coverage, no
+  /// background. `samples` in a pixel, cut to what the driver has; 1: at pixel centres.
+  void draw(const View& view, int width, int height, int samples);
+  /// Puts the background behind the last frame and develops it into the bound framebuffer of the
+  /// same size.
+  void develop(const View& view);
+
+  /// Draws and returns linear RGBA with the background composed; alpha is the model's coverage.
+  image::Image render(const View& view, int width, int height, int samples);
+
+ private:
+  struct Drawings;
+  void update_light();
+  void composite(const View& view, int output);
+
+  gl::VertexArray no_attributes_;
+  gl::Program composite_program_;
+  gl::Format float_format_;
+  gl::Target frame_;
+  int frame_samples_ = 0;
+  gl::Texture environment_;
+  sh::Light light_;
+  Matrix4 world_from_light_;
+  std::unique_ptr<Drawings> drawings_;
+};
+
+}  // namespace prt::runtime

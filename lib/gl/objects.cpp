@@ -1,0 +1,115 @@
+#include "gl/objects.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/error.h"
+#include "gl/context.h"
+
+namespace prt::gl {
+
+namespace {
+
+unsigned int generate(void (*generator)(GLsizei, GLuint*)) {
+  GLuint name = 0;
+  generator(1, &name);
+  return name;
+}
+
+const void* byte_offset(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
+
+}  // namespace
+
+void delete_buffer(unsigned int name) { glDeleteBuffers(1, &name); }
+void delete_texture(unsigned int name) { glDeleteTextures(1, &name); }
+void delete_vertex_array(unsigned int name) { glDeleteVertexArrays(1, &name); }
+
+// epoxy's calls are macros or function pointers, so that a lambda stands between.
+Buffer::Buffer(std::span<const std::byte> bytes)
+    : name_(generate([](GLsizei n, GLuint* names) { glGenBuffers(n, names); })) {
+  glBindBuffer(GL_COPY_WRITE_BUFFER, name());
+  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
+               GL_STATIC_DRAW);
+  check_errors("storing a buffer");
+}
+
+VertexArray::VertexArray()
+    : name_(generate([](GLsizei n, GLuint* names) { glGenVertexArrays(n, names); })) {}
+
+void VertexArray::bind() const { glBindVertexArray(name_.get()); }
+
+void VertexArray::set_floats(unsigned int location, const Buffer& buffer, int component_count,
+                             std::size_t stride, std::size_t offset) {
+  bind();
+  glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
+  glEnableVertexAttribArray(location);
+  glVertexAttribPointer(location, component_count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
+                        byte_offset(offset));
+}
+
+void VertexArray::set_uints(unsigned int location, const Buffer& buffer) {
+  bind();
+  glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
+  glEnableVertexAttribArray(location);
+  glVertexAttribIPointer(location, 1, GL_UNSIGNED_INT, 0, nullptr);
+}
+
+void VertexArray::set_indices(const Buffer& buffer) {
+  bind();
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.name());
+}
+
+Texture::Texture(Format format, int width, int height, const float* pixels)
+    : name_(generate([](GLsizei n, GLuint* names) { glGenTextures(n, names); })),
+      width_(width),
+      height_(height) {
+  const int limit = limits().max_texture_size;
+  if (width > limit || height > limit)
+    throw_failed("a texture is larger than this OpenGL allows",
+                 {.found = std::to_string(width) + "x" + std::to_string(height),
+                  .expected = "at most " + std::to_string(limit) + " pixels a side"});
+  glBindTexture(GL_TEXTURE_2D, name());
+  const bool bytes = format == Format::rgba8;
+  const GLint internal = bytes ? GL_RGBA8 : format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F;
+  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, GL_RGBA,
+               bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, pixels);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  check_errors("storing a texture");
+}
+
+void Texture::bind(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, name());
+}
+
+Table::Table(std::size_t count) : count_(count) {
+  // A power of two, so that the shader's division is a shift; rows long enough to be few.
+  constexpr std::size_t kRowLength = 2048;
+  const std::size_t width =
+      std::min<std::size_t>(kRowLength, static_cast<std::size_t>(limits().max_texture_size));
+  const std::size_t height = std::max<std::size_t>((count + width - 1) / width, 1);
+  if (height > static_cast<std::size_t>(limits().max_texture_size))
+    throw_failed("the model's data do not fit a texture of this OpenGL",
+                 {.found = std::to_string(count) + " vec4"});
+  static_cast<Texture&>(*this) =
+      Texture(Format::rgba32f, static_cast<int>(width), static_cast<int>(height));
+}
+
+void Table::upload(std::span<const Vec4> values) {
+  if (values.size() != count_) throw_failed("a table keeps its size");
+  glBindTexture(GL_TEXTURE_2D, name());
+  const std::size_t full_rows = count_ / static_cast<std::size_t>(width_);
+  const std::size_t rest = count_ % static_cast<std::size_t>(width_);
+  const auto rows = static_cast<GLsizei>(full_rows);
+  if (rows > 0)
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, rows, GL_RGBA, GL_FLOAT, values.data());
+  if (rest > 0)
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, static_cast<GLsizei>(rest), 1, GL_RGBA, GL_FLOAT,
+                    values.data() + full_rows * static_cast<std::size_t>(width_));
+  check_errors("uploading a table");
+}
+
+}  // namespace prt::gl

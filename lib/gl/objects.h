@@ -1,0 +1,124 @@
+// OpenGL objects as values: made in the constructor, deleted in the destructor, moved, never
+// copied. All need a current context. Failures are Error (failed).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "core/vec.h"
+
+namespace prt::gl {
+
+/// An OpenGL name and the call that deletes it.
+template <void (*kDelete)(unsigned int)>
+class Name {
+ public:
+  Name() = default;
+  explicit Name(unsigned int value) : value_(value) {}
+  Name(Name&& other) noexcept : value_(std::exchange(other.value_, 0)) {}
+  Name& operator=(Name&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  ~Name() {
+    if (value_ != 0) kDelete(value_);
+  }
+  unsigned int get() const { return value_; }
+
+ private:
+  unsigned int value_ = 0;
+};
+
+void delete_buffer(unsigned int name);
+void delete_texture(unsigned int name);
+void delete_renderbuffer(unsigned int name);
+void delete_framebuffer(unsigned int name);
+void delete_vertex_array(unsigned int name);
+
+/// Immutable vertex or index data.
+class Buffer {
+ public:
+  Buffer() = default;
+  template <class T>
+  explicit Buffer(std::span<const T> values) : Buffer(std::as_bytes(values)) {}
+  explicit Buffer(std::span<const std::byte> bytes);
+  unsigned int name() const { return name_.get(); }
+
+ private:
+  Name<delete_buffer> name_;
+};
+
+/// What a draw call reads: attributes by location, and triangles' indices (std::uint32_t).
+class VertexArray {
+ public:
+  VertexArray();
+  /// `component_count` floats for each vertex, `stride` and `offset` in bytes.
+  void set_floats(unsigned int location, const Buffer& buffer, int component_count,
+                  std::size_t stride, std::size_t offset);
+  /// One std::uint32_t for each vertex, tightly packed.
+  void set_uints(unsigned int location, const Buffer& buffer);
+  void set_indices(const Buffer& buffer);
+  void bind() const;
+
+ private:
+  Name<delete_vertex_array> name_;
+};
+
+enum class Format { rgba8, rgba16f, rgba32f };
+
+/// One level, no filtering (shaders fetch texels and interpolate where they must).
+class Texture {
+ public:
+  Texture() = default;
+  /// `pixels`: width × height × 4 floats, first row at texel row 0, or null for none yet.
+  Texture(Format format, int width, int height, const float* pixels = nullptr);
+  void bind(int unit) const;
+  unsigned int name() const { return name_.get(); }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ protected:
+  Name<delete_texture> name_;
+  int width_ = 0, height_ = 0;
+};
+
+/// A one-dimensional array of vec4 as large as textures can be: element i is texel (i % width,
+/// i / width) of an RGBA32F texture; table.glsl has the fetch.
+class Table : public Texture {
+ public:
+  Table() = default;
+  explicit Table(std::size_t count);
+  /// All elements; the same number as at construction.
+  void upload(std::span<const Vec4> values);
+
+ private:
+  std::size_t count_ = 0;
+};
+
+/// A colour texture, and when asked depth and multisampling (resolve() then brings the samples'
+/// mean into the texture).
+class Target {
+ public:
+  Target() = default;
+  Target(Format format, int width, int height, bool depth, int samples);
+  /// Everything drawn from now on goes here.
+  void bind() const;
+  void resolve() const;
+  const Texture& color() const { return color_; }
+  int width() const { return color_.width(); }
+  int height() const { return color_.height(); }
+  /// The resolved colours, width × height × 4 floats, bottom row first.
+  void read(std::span<float> pixels) const;
+
+ private:
+  Texture color_;
+  Name<delete_framebuffer> framebuffer_;
+  Name<delete_renderbuffer> samples_, depth_;
+  Name<delete_framebuffer> sample_framebuffer_;
+};
+
+/// Draws to the window again.
+void bind_window(int width, int height);
+
+}  // namespace prt::gl

@@ -1,0 +1,67 @@
+#include "runtime/lighting.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include "core/parallel.h"
+#include "image/environment.h"
+#include "sh/basis.h"
+
+namespace prt::runtime {
+
+namespace {
+
+// Bilinear interpolation errs by at most (pi / height)² l² / 8 of the highest band l: 0.2% at l
+// = 9.
+constexpr int kBackgroundHeight = 256;
+
+image::Image image_of(const sh::Light& light) {
+  image::Image map(2 * kBackgroundHeight, kBackgroundHeight, 3);
+  const auto width = static_cast<std::size_t>(map.width);
+  const auto coefficient_count = static_cast<std::size_t>(sh::coefficient_count(light.band_count));
+  parallel_for(kBackgroundHeight, 16, [&](std::size_t begin, std::size_t end) {
+    std::array<std::vector<float>, 3> direction;
+    for (std::vector<float>& axis : direction) axis.resize(width);
+    std::vector<float> basis(coefficient_count * width);
+    for (std::size_t y = begin; y < end; ++y) {
+      for (std::size_t x = 0; x < width; ++x) {
+        const Vec3 d = image::direction_from_latlong(
+            (static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+            (static_cast<float>(y) + 0.5f) / static_cast<float>(kBackgroundHeight));
+        for (int axis = 0; axis < 3; ++axis) direction[static_cast<std::size_t>(axis)][x] = d[axis];
+      }
+      sh::evaluate_batch(light.band_count, direction[0].data(), direction[1].data(),
+                         direction[2].data(), width, basis.data(), width);
+      float* const row = map.at(0, static_cast<int>(y));
+      for (std::size_t k = 0; k < coefficient_count; ++k)
+        for (std::size_t x = 0; x < width; ++x)
+          for (std::size_t c = 0; c < 3; ++c)
+            row[3 * x + c] += light.coefficients[c][k] * basis[k * width + x];
+    }
+  });
+  return map;
+}
+
+}  // namespace
+
+Lighting lighting_from(sh::Light light) {
+  image::Image environment = image_of(light);
+  return {std::move(light), std::move(environment), false};
+}
+
+Lighting load_lighting(const std::filesystem::path& path, int band_count) {
+  if (path.extension() == ".json") return lighting_from(sh::read_light(path));
+  image::Image map = image::read_environment(path);
+  sh::Light light = sh::project_environment(band_count, map.width, map.height, map.pixels.data());
+  return {std::move(light), std::move(map), true};
+}
+
+Matrix4 light_rotation(float degrees) {
+  Matrix4 world_from_light;
+  world_from_light.setAxisAngle(Vec3(0, 1, 0), degrees * std::numbers::pi_v<float> / 180.0f);
+  return world_from_light;
+}
+
+}  // namespace prt::runtime

@@ -1,0 +1,29 @@
+// Light as the runtime takes it: the spherical harmonics that light the model, and the map that
+// stands behind it.
+#pragma once
+
+#include <filesystem>
+
+#include "core/vec.h"
+#include "image/image.h"
+#include "sh/light.h"
+
+namespace prt::runtime {
+
+struct Lighting {
+  sh::Light light;
+  image::Image environment;  ///< latitude-longitude, 3 channels, what the background shows
+  bool is_full_map = false;  ///< `environment` is the file's map, not the band-limited light's
+};
+
+/// A light file (.json), shown behind the model as band limited as it lights; or an environment map
+/// (any other file), shown in full and projected to `band_count` bands. Throws Error (bad_input).
+Lighting load_lighting(const std::filesystem::path& path, int band_count);
+
+/// A given light, its background drawn from its coefficients.
+Lighting lighting_from(sh::Light light);
+
+/// Turns light about +Y, counter-clockwise seen from above.
+Matrix4 light_rotation(float degrees);
+
+}  // namespace prt::runtime

@@ -1,0 +1,81 @@
+#include "runtime/model.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "gltf/document.h"
+
+namespace prt::runtime {
+
+namespace {
+
+void check_transfer(std::size_t vertex_count, std::size_t found_vertex_count, int row_count) {
+  if (found_vertex_count != vertex_count)
+    throw_bad_input(
+        "the transfer has another number of vertices than the model",
+        {.found = std::to_string(found_vertex_count), .expected = std::to_string(vertex_count)});
+  if (row_count != 1)
+    throw_bad_input("only diffuse transfer can be drawn",
+                    {.found = std::to_string(row_count) + " exit rows", .expected = "1"});
+}
+
+}  // namespace
+
+int Model::band_count() const {
+  return transfer ? transfer->band_count : signal ? signal->band_count : 0;
+}
+
+Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransfer> transfer,
+                 std::optional<signal::TransferSignal> signal) {
+  Model model;
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    const auto first = static_cast<std::uint32_t>(model.positions.size());
+    const mesh::TriangleMesh& mesh = primitive.mesh;
+    model.positions.insert(model.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const std::uint32_t index : mesh.indices) model.indices.push_back(first + index);
+  }
+  model.bounds = camera::bounding_sphere(scene);
+  const std::size_t vertex_count = model.positions.size();
+  if (transfer) check_transfer(vertex_count, transfer->encoding.point_count, transfer->row_count);
+  if (signal) check_transfer(vertex_count, signal->vertex_count(), signal->row_count);
+  model.transfer = std::move(transfer);
+  model.signal = std::move(signal);
+  return model;
+}
+
+Model load_model(const std::filesystem::path& glb, const std::filesystem::path& transfer) {
+  const gltf::Document document = gltf::Document::load(glb);
+  const mesh::Scene scene = document.scene();
+  std::optional<gltf::PrecomputedTransfer> compressed = document.precomputed_transfer();
+  std::optional<signal::TransferSignal> signal;
+  if (!transfer.empty()) {
+    signal = signal::read_transfer(transfer);
+    signal::check_belongs_to(*signal, scene, transfer);
+  }
+  if (!compressed && !signal)
+    throw_bad_input("there is no precomputed transfer to draw",
+                    {.file = glb.string(),
+                     .expected = "the extension PRTKIT_precomputed_transfer",
+                     .advice = "Bake it with prt-transfer and prt-compress, or give --transfer."});
+  return make_model(scene, std::move(compressed), std::move(signal));
+}
+
+std::vector<float> relative_errors(const Model& model) {
+  if (!model.transfer || !model.signal) return {};
+  if (model.transfer->encoding.dimension != model.signal->dimension())
+    throw_bad_input("compressed and uncompressed transfer differ in bands or channels",
+                    {.found = std::to_string(model.signal->dimension()) + " coefficients",
+                     .expected = std::to_string(model.transfer->encoding.dimension)});
+  const std::vector<double> errors =
+      cpca::point_errors(model.transfer->encoding, model.signal->values);
+  double energy = 0.0;
+  for (const float value : model.signal->values) energy += double{value} * value;
+  const double mean_energy = energy / static_cast<double>(errors.size());
+  std::vector<float> relative(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    relative[i] = mean_energy > 0.0 ? static_cast<float>(std::sqrt(errors[i] / mean_energy)) : 0.0f;
+  return relative;
+}
+
+}  // namespace prt::runtime

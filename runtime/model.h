@@ -1,0 +1,40 @@
+// What the runtime draws: the triangles of a file's scene with their transfer, compressed,
+// uncompressed or both.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "camera/camera.h"
+#include "gltf/precomputed_transfer.h"
+#include "mesh/scene.h"
+#include "signal/transfer_signal.h"
+
+namespace prt::runtime {
+
+/// Vertices and triangles of all primitives, numbered through as in mesh::Scene.
+struct Model {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> indices;
+  camera::Sphere bounds;
+  std::optional<gltf::PrecomputedTransfer> transfer;  ///< compressed
+  std::optional<signal::TransferSignal> signal;       ///< uncompressed
+
+  int band_count() const;  ///< of the transfer; 0 without any
+};
+
+/// Throws Error (bad_input) when a transfer has another number of vertices or is not diffuse.
+Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransfer> transfer,
+                 std::optional<signal::TransferSignal> signal);
+
+/// Reads a .glb and, unless empty, the transfer file of its mesh. Throws Error (bad_input) when
+/// there is no transfer in either, or the transfer belongs to another mesh.
+Model load_model(const std::filesystem::path& glb, const std::filesystem::path& transfer = {});
+
+/// Root mean square error of each vertex' compressed transfer, relative to the root mean square
+/// of the signal. Empty unless the model has both transfers.
+std::vector<float> relative_errors(const Model& model);
+
+}  // namespace prt::runtime

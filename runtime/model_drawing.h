@@ -1,0 +1,73 @@
+// A model in OpenGL: its buffers, and every way to draw it into the bound target, which has depth.
+// Colours are linear exit radiance, alpha is coverage.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "runtime/model.h"
+#include "sh/light.h"
+
+namespace prt::runtime {
+
+/// Compressed transfer; both ways give the same pixels.
+class CompressedDrawing {
+ public:
+  /// The model has compressed transfer. Throws Error (failed) when it has more components than this
+  /// OpenGL has vertex attributes for.
+  CompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
+
+  /// What ClusterConstants::evaluate returned for the light.
+  void set_constants(const std::vector<Vec4>& constants);
+
+  /// All clusters in one draw call; constants are fetched for each vertex.
+  void draw_single(const Matrix4& clip_from_world) const;
+  /// The loop of [Sloan03] §6.2: depth first, then cluster by cluster, constants in uniform
+  /// registers, added up by blending. Where two triangles coincide exactly, both are added.
+  void draw_clusters(const Matrix4& clip_from_world) const;
+
+ private:
+  std::size_t index_count_;
+  int component_count_;
+  gl::Buffer clusters_, weights_, chunk_indices_;
+  gl::VertexArray single_array_, chunk_array_;
+  std::vector<std::size_t> chunk_offsets_;
+  gl::Program single_program_, cluster_program_, depth_program_;
+  gl::Table constant_table_;
+  std::vector<Vec4> constants_;
+};
+
+/// Uncompressed transfer: the dot product of all coefficients for each vertex in its shader.
+class UncompressedDrawing {
+ public:
+  UncompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
+  void set_light(const sh::Light& light);
+  void draw(const Matrix4& clip_from_world) const;
+
+ private:
+  std::size_t index_count_;
+  int band_count_;
+  gl::VertexArray array_;
+  gl::Table transfer_;
+  gl::Program program_;
+  std::vector<Vec4> light_;
+};
+
+/// A colour for each vertex.
+class ColorDrawing {
+ public:
+  ColorDrawing(std::span<const Vec3> colors, std::size_t index_count, const gl::Buffer& positions,
+               const gl::Buffer& indices);
+  void draw(const Matrix4& clip_from_world) const;
+
+ private:
+  std::size_t index_count_;
+  gl::Buffer colors_;
+  gl::VertexArray array_;
+  gl::Program program_;
+};
+
+}  // namespace prt::runtime

@@ -1,0 +1,177 @@
+#include "runtime/renderer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "gl/context.h"
+#include "runtime/cluster_constants.h"
+#include "runtime/model_drawing.h"
+#include "runtime/shading.h"
+
+namespace prt::runtime {
+
+namespace {
+
+// Of composite.frag.
+enum Output { kLinear = 0, kSrgb = 1, kToneMapped = 2 };
+
+gl::Texture make_environment_texture(const image::Image& map) {
+  const std::size_t texel_count = map.pixels.size() / 3;
+  std::vector<float> rgba(4 * texel_count, 1.0f);
+  for (std::size_t i = 0; i < texel_count; ++i) std::copy_n(&map.pixels[3 * i], 3, &rgba[4 * i]);
+  return gl::Texture(gl::Format::rgba32f, map.width, map.height, rgba.data());
+}
+
+std::vector<Vec3> cluster_colors(const cpca::Encoding& encoding) {
+  std::vector<Vec3> colors;
+  for (const std::uint32_t cluster : encoding.cluster_of_point)
+    colors.push_back(cluster_color(cluster));
+  return colors;
+}
+
+std::vector<Vec3> error_colors(const Model& model) {
+  std::vector<Vec3> colors;
+  for (const float error : relative_errors(model))
+    colors.push_back(heat_color(error / kErrorScale));
+  return colors;
+}
+
+}  // namespace
+
+struct Renderer::Drawings {
+  explicit Drawings(const Model& model)
+      : bounds(model.bounds),
+        positions(std::span(model.positions)),
+        indices(std::span(model.indices)) {
+    if (model.transfer) {
+      constants.emplace(*model.transfer);
+      compressed.emplace(model, positions, indices);
+      clusters.emplace(cluster_colors(model.transfer->encoding), model.indices.size(), positions,
+                       indices);
+    }
+    if (model.signal) uncompressed.emplace(model, positions, indices);
+    if (model.transfer && model.signal)
+      error.emplace(error_colors(model), model.indices.size(), positions, indices);
+  }
+
+  void draw(const View& view, const Matrix4& clip_from_world) const {
+    if (view.show == Show::clusters) return clusters->draw(clip_from_world);
+    if (view.show == Show::error) return error->draw(clip_from_world);
+    if (view.draw == Draw::uncompressed) return uncompressed->draw(clip_from_world);
+    if (view.draw == Draw::clusters) return compressed->draw_clusters(clip_from_world);
+    compressed->draw_single(clip_from_world);
+  }
+
+  camera::Sphere bounds;
+  gl::Buffer positions, indices;
+  std::optional<ClusterConstants> constants;
+  std::optional<CompressedDrawing> compressed;
+  std::optional<UncompressedDrawing> uncompressed;
+  std::optional<ColorDrawing> clusters, error;
+};
+
+Renderer::Renderer()
+    : composite_program_("fullscreen.vert", "composite.frag"),
+      float_format_(gl::limits().float32_targets ? gl::Format::rgba32f : gl::Format::rgba16f) {
+  const float black[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+  environment_ = gl::Texture(gl::Format::rgba32f, 1, 1, black);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::set_model(const Model& model) {
+  drawings_ = std::make_unique<Drawings>(model);
+  update_light();
+}
+
+void Renderer::set_lighting(const Lighting& lighting) {
+  environment_ = make_environment_texture(lighting.environment);
+  light_ = lighting.light;
+  update_light();
+}
+
+void Renderer::set_light_rotation(const Matrix4& world_from_light) {
+  world_from_light_ = world_from_light;
+  update_light();
+}
+
+void Renderer::update_light() {
+  if (!drawings_) return;
+  const sh::Light light = sh::rotated(light_, world_from_light_);
+  if (drawings_->compressed)
+    drawings_->compressed->set_constants(drawings_->constants->evaluate(light));
+  if (drawings_->uncompressed) drawings_->uncompressed->set_light(light);
+}
+
+bool Renderer::can_draw(Draw draw, Show show) const {
+  if (!drawings_) return false;
+  if (show == Show::clusters) return drawings_->clusters.has_value();
+  if (show == Show::error) return drawings_->error.has_value();
+  return draw == Draw::uncompressed ? drawings_->uncompressed.has_value()
+                                    : drawings_->compressed.has_value();
+}
+
+void Renderer::draw(const View& view, int width, int height, int samples) {
+  samples = std::clamp(samples, 1, std::max(gl::limits().max_samples, 1));
+  if (width != frame_.width() || height != frame_.height() || samples != frame_samples_) {
+    frame_ = gl::Target(float_format_, width, height, true, samples);
+    frame_samples_ = samples;
+  }
+  frame_.bind();
+  glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  if (can_draw(view.draw, view.show)) {
+    const camera::DepthRange range = camera::depth_range(view.camera, drawings_->bounds);
+    glEnable(GL_DEPTH_TEST);
+    drawings_->draw(view, view.camera.clip_from_world(range.z_near, range.z_far));
+    glDisable(GL_DEPTH_TEST);
+  }
+  frame_.resolve();
+  gl::check_errors("drawing the model");
+}
+
+void Renderer::composite(const View& view, int output) {
+  const camera::Camera::Axes axes = view.camera.axes();
+  const float tangent = std::tan(view.camera.vertical_fov * std::numbers::pi_v<float> / 360.0f);
+  const Matrix4 light_from_world = world_from_light_.transposed();
+  const gl::Program& program = composite_program_;
+  program.use();
+  program.set("u_scene", 0);
+  program.set("u_environment", 1);
+  program.set("u_background", static_cast<int>(view.background));
+  program.set("u_background_color", view.background_color);
+  program.set("u_ray_right",
+              transform_vector(light_from_world, axes.right * (tangent * view.camera.aspect)));
+  program.set("u_ray_up", transform_vector(light_from_world, axes.up * tangent));
+  program.set("u_ray_forward", transform_vector(light_from_world, -axes.backward));
+  program.set("u_output", output);
+  program.set("u_exposure", std::exp2(view.exposure));
+  frame_.color().bind(0);
+  environment_.bind(1);
+  no_attributes_.bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  gl::check_errors("developing the picture");
+}
+
+void Renderer::develop(const View& view) {
+  composite(view, view.show == Show::radiance ? kToneMapped : kSrgb);
+}
+
+image::Image Renderer::render(const View& view, int width, int height, int samples) {
+  draw(view, width, height, samples);
+  const gl::Target composed(float_format_, width, height, false, 1);
+  composed.bind();
+  composite(view, kLinear);
+  image::Image upside_down(width, height, 4), image(width, height, 4);
+  composed.read(upside_down.pixels);
+  for (int y = 0; y < height; ++y)
+    std::copy_n(upside_down.at(0, height - 1 - y), 4 * width, image.at(0, y));
+  return image;
+}
+
+}  // namespace prt::runtime

@@ -1,0 +1,33 @@
+// The formulas of the shaders on the CPU: tests hold rendered pixels against these, and pictures
+// that no shader has developed (the path tracer's) are developed by them.
+#pragma once
+
+#include <cstddef>
+
+#include "core/vec.h"
+#include "gltf/precomputed_transfer.h"
+#include "sh/light.h"
+#include "signal/transfer_signal.h"
+
+namespace prt::runtime {
+
+/// Exit radiance of a vertex from compressed transfer [Sloan03] §6, term by term. Light and
+/// transfer have the same number of bands. Twin of transfer_single.vert and transfer_cluster.vert.
+Vec3 vertex_radiance(const gltf::PrecomputedTransfer& transfer, std::size_t vertex,
+                     const sh::Light& light);
+/// The same from uncompressed transfer [Sloan02]. Twin of transfer_uncompressed.vert.
+Vec3 vertex_radiance(const signal::TransferSignal& signal, std::size_t vertex,
+                     const sh::Light& light);
+
+/// The Khronos PBR Neutral tone mapper (Khronos, 2024): hue and base colours as lit up to 0.76,
+/// highlights compressed above. Negative radiance, which ringing light has, is black here and
+/// nowhere before. Display-linear in [0, 1]. Twin of tone_map.glsl.
+Vec3 tone_map(const Vec3& radiance);
+
+/// Display-linear colour of an error: blue, cyan, green, yellow, red over t in [0, 1].
+Vec3 heat_color(float t);
+
+/// Display-linear colour of a cluster: depends on its number alone, neighbours in number differ.
+Vec3 cluster_color(std::size_t cluster);
+
+}  // namespace prt::runtime
