@@ -1,6 +1,8 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "gl/context.h"
 #include "runtime/cluster_chunks.h"

@@ -153,8 +153,7 @@ void Renderer::composite(const View& view, int output) {
   program.set("u_exposure", std::exp2(view.exposure));
   frame_.color().bind(0);
   environment_.bind(1);
-  no_attributes_.bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  gl::draw_fullscreen(no_attributes_);
   gl::check_errors("developing the picture");
 }
 

@@ -121,4 +121,8 @@ class Target {
 /// Draws to the window again.
 void bind_window(int width, int height);
 
+/// Runs the program in use over the whole viewport; its vertex shader is fullscreen.vert. The array
+/// has no attributes.
+void draw_fullscreen(const VertexArray& no_attributes);
+
 }  // namespace prt::gl

@@ -88,4 +88,9 @@ void bind_window(int width, int height) {
   glViewport(0, 0, width, height);
 }
 
+void draw_fullscreen(const VertexArray& no_attributes) {
+  no_attributes.bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 }  // namespace prt::gl

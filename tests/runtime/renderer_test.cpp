@@ -1,0 +1,287 @@
+#include "runtime/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "gl/context.h"
+#include "image/environment.h"
+#include "ray/engine.h"
+#include "runtime/models.h"
+#include "runtime/shading.h"
+
+namespace prt::runtime {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+
+/// Largest difference over all channels of all pixels; both images must show something.
+float largest_difference(const image::Image& a, const image::Image& b) {
+  EXPECT_EQ(a.pixels.size(), b.pixels.size());
+  float largest = 0.0f;
+  std::size_t covered_count = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    largest = std::max(largest, std::abs(a.pixels[i] - b.pixels[i]));
+    covered_count += i % 4 == 3 && a.pixels[i] > 0.0f;
+  }
+  EXPECT_GT(covered_count, 500u) << "nothing was drawn";
+  return largest;
+}
+
+View view_of(const Model& model) {
+  View view;
+  view.camera = camera::frame(model.bounds, 40, static_cast<float>(kWidth) / kHeight);
+  view.background = Background::none;
+  return view;
+}
+
+class EveryApi : public testing::TestWithParam<gl::Api> {
+ protected:
+  gl::HeadlessContext context_{{.api = GetParam()}};
+  Renderer renderer_;
+
+  image::Image render(const Model& model, Draw draw, const Lighting& lighting, int samples = 1) {
+    View view = view_of(model);
+    view.draw = draw;
+    renderer_.set_model(model);
+    renderer_.set_lighting(lighting);
+    return renderer_.render(view, kWidth, kHeight, samples);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Renderer, EveryApi, testing::Values(gl::Api::core_3_3, gl::Api::es_3_0));
+
+TEST_P(EveryApi, BothWaysOfDrawingCompressedTransferGiveTheSamePixels) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  for (const int channel_count : {1, 3})
+    for (const int component_count : {0, 1, 8, 13}) {
+      const Model model = make_model(
+          scene, random_transfer(scene.vertex_count(), 4, channel_count, 40, component_count), {});
+      const Lighting lighting = lighting_from(test_light(4));
+      for (const int samples : {1, 4})
+        EXPECT_LT(largest_difference(render(model, Draw::single, lighting, samples),
+                                     render(model, Draw::clusters, lighting, samples)),
+                  1e-4f)
+            << channel_count << " channels, " << component_count << " components";
+    }
+}
+
+TEST_P(EveryApi, FullRankCompressionDrawsLikeUncompressed) {
+  const mesh::Scene scene = scene_of({sphere(24, 32), torus(48, 24)});
+  for (const std::vector<Vec3>& albedo :
+       {std::vector<Vec3>{{1, 0, 0}}, std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}) {
+    const int band_count = albedo.size() == 1 ? 5 : 3;
+    const signal::TransferSignal signal = unshadowed(scene, band_count, albedo);
+    const Model model = make_model(scene, full_rank(signal, 9), signal);
+    const Lighting lighting = lighting_from(test_light(band_count));
+    EXPECT_LT(largest_difference(render(model, Draw::single, lighting),
+                                 render(model, Draw::uncompressed, lighting)),
+              1e-4f);
+  }
+}
+
+/// The pixel that the CPU computes: the camera's ray, its hit, the vertices' radiance interpolated.
+class CpuPixels {
+ public:
+  CpuPixels(const Model& model, const View& view, const sh::Light& light)
+      : model_(model),
+        view_(view),
+        light_(light),
+        engine_(ray::make_embree_engine({model.positions, model.indices})) {}
+
+  /// False beside the model and near an edge of its outline, where rasteriser and ray may differ.
+  bool radiance(int x, int y, Vec3& radiance) const {
+    const ray::Hit hit = closest(x, y);
+    if (hit.triangle == ray::kNoHit) return false;
+    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+      const ray::Hit beside = closest(x + dx, y + dy);
+      if (beside.triangle == ray::kNoHit || std::abs(beside.t - hit.t) > 0.2f) return false;
+    }
+    const std::uint32_t* const corner = &model_.indices[3 * hit.triangle];
+    radiance = vertex(corner[0]) * (1 - hit.u - hit.v) + vertex(corner[1]) * hit.u +
+               vertex(corner[2]) * hit.v;
+    return true;
+  }
+
+ private:
+  ray::Hit closest(int x, int y) const {
+    ray::Ray ray;
+    ray.origin = view_.camera.eye;
+    ray.direction = view_.camera.ray_direction((2 * static_cast<float>(x) + 1) / kWidth - 1,
+                                               1 - (2 * static_cast<float>(y) + 1) / kHeight);
+    ray::Hit hit;
+    engine_->closest_hit({&ray, 1}, {&hit, 1}, ray::Coherence::incoherent);
+    return hit;
+  }
+  Vec3 vertex(std::uint32_t index) const {
+    return view_.draw == Draw::uncompressed ? vertex_radiance(*model_.signal, index, light_)
+                                            : vertex_radiance(*model_.transfer, index, light_);
+  }
+
+  const Model& model_;
+  const View& view_;
+  const sh::Light& light_;
+  std::unique_ptr<ray::Engine> engine_;
+};
+
+TEST_P(EveryApi, PixelsAgreeWithTheCpuTwin) {
+  const mesh::Scene scene = scene_of({torus(80, 40)});
+  const signal::TransferSignal signal = unshadowed(scene, 5, {{2, 1, 0}, {0, 1, 2}, {1, 2, 0}});
+  gltf::PrecomputedTransfer transfer = random_transfer(scene.vertex_count(), 5, 3, 30, 6);
+  // Weights that vary slowly, so that a pixel's exact place in its triangle matters little.
+  for (std::size_t p = 0; p < scene.vertex_count(); ++p)
+    for (std::size_t i = 0; i < 6; ++i)
+      transfer.encoding.weights[6 * p + i] =
+          0.3f * std::sin(scene.primitives[0].mesh.positions[p].x * static_cast<float>(i));
+  std::fill(transfer.encoding.cluster_of_point.begin(), transfer.encoding.cluster_of_point.end(),
+            17u);
+  const Model model = make_model(scene, transfer, signal);
+  const sh::Light light = test_light(5);
+  for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed}) {
+    View view = view_of(model);
+    view.draw = draw;
+    const image::Image image = render(model, draw, lighting_from(light));
+    const CpuPixels cpu(model, view, light);
+    std::size_t compared_count = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        Vec3 expected;
+        if (!cpu.radiance(x, y, expected)) continue;
+        ++compared_count;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], expected[c], 2e-3f);
+        EXPECT_EQ(image.at(x, y)[3], 1.0f);
+      }
+    EXPECT_GT(compared_count, 500u);
+  }
+}
+
+TEST_P(EveryApi, BackgroundAgreesWithTheEnvironmentOnTheCpu) {
+  image::Image map(16, 8, 3);
+  Pcg32 random(5);
+  for (float& value : map.pixels) value = 3 * random.uniform();
+  Model nothing;
+  nothing.bounds = {Vec3(0), 1};
+  View view = view_of(nothing);
+  view.background = Background::environment;
+  Lighting lighting = lighting_from(test_light(2));
+  lighting.environment = map;
+  renderer_.set_lighting(lighting);
+  const float degrees = 37;
+  const Matrix4 world_from_light = light_rotation(degrees);
+  renderer_.set_light_rotation(world_from_light);
+  const image::Image image = renderer_.render(view, kWidth, kHeight, 1);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Vec3 ray = view.camera.ray_direction((2 * static_cast<float>(x) + 1) / kWidth - 1,
+                                                 1 - (2 * static_cast<float>(y) + 1) / kHeight);
+      const Vec3 expected =
+          image::environment_radiance(map, transform_vector(world_from_light.transposed(), ray));
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], expected[c], 1e-3f);
+      EXPECT_EQ(image.at(x, y)[3], 0.0f);
+    }
+}
+
+TEST_P(EveryApi, TurningTheLightIsTurningTheEnvironment) {
+  const mesh::Scene scene = scene_of({sphere(24, 32)});
+  const signal::TransferSignal signal = unshadowed(scene, 5, {{1, 0, 0}});
+  const Model model = make_model(scene, full_rank(signal, 3), signal);
+  const sh::Light light = test_light(5);
+  const Matrix4 world_from_light = light_rotation(65);
+  View view = view_of(model);
+  view.background = Background::environment;
+  renderer_.set_model(model);
+  renderer_.set_lighting(lighting_from(light));
+  renderer_.set_light_rotation(world_from_light);
+  const image::Image turned = renderer_.render(view, kWidth, kHeight, 1);
+  renderer_.set_lighting(lighting_from(sh::rotated(light, world_from_light)));
+  renderer_.set_light_rotation(Matrix4());
+  // The two backgrounds interpolate their maps at different places.
+  EXPECT_LT(largest_difference(turned, renderer_.render(view, kWidth, kHeight, 1)), 5e-3f);
+}
+
+TEST_P(EveryApi, AlphaIsCoverageAndSamplesSmoothIt) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  const Model model = make_model(scene, random_transfer(scene.vertex_count(), 2, 1, 4, 2), {});
+  const Lighting lighting = lighting_from(test_light(2));
+  const auto partial_count = [](const image::Image& image) {
+    std::size_t count = 0;
+    for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+      count += image.pixels[i] > 0.0f && image.pixels[i] < 1.0f;
+    return count;
+  };
+  EXPECT_EQ(partial_count(render(model, Draw::single, lighting, 1)), 0u);
+  if (gl::limits().max_samples > 1) {
+    EXPECT_GT(partial_count(render(model, Draw::single, lighting, 4)), 50u);
+    EXPECT_GT(partial_count(render(model, Draw::clusters, lighting, 4)), 50u);
+  }
+}
+
+TEST_P(EveryApi, FalseColorsAreThoseOfTheCpu) {
+  const mesh::Scene scene = scene_of({sphere(24, 32)});
+  const signal::TransferSignal signal = unshadowed(scene, 3, {{1, 0, 0}});
+  gltf::PrecomputedTransfer transfer = full_rank(signal, 1);
+  const Model exact = make_model(scene, transfer, signal);
+  View view = view_of(exact);
+  const auto middle = [&](const Model& model, Show show) {
+    renderer_.set_model(model);
+    view.show = show;
+    const image::Image image = renderer_.render(view, kWidth, kHeight, 1);
+    const float* const pixel = image.at(kWidth / 2, kHeight / 2);
+    return Vec3(pixel[0], pixel[1], pixel[2]);
+  };
+  EXPECT_LT((middle(exact, Show::error) - heat_color(0)).length(), 1e-3f);
+  EXPECT_LT((middle(exact, Show::clusters) - cluster_color(0)).length(), 1e-5f);
+  for (float& weight : transfer.encoding.weights) weight += 1.0f;
+  EXPECT_LT((middle(make_model(scene, transfer, signal), Show::error) - heat_color(1)).length(),
+            1e-5f);
+}
+
+TEST_P(EveryApi, DevelopedPictureIsTheToneMapOfTheCpu) {
+  const mesh::Scene scene = scene_of({sphere(24, 32)});
+  const signal::TransferSignal signal = unshadowed(scene, 5, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  const Model model = make_model(scene, {}, signal);
+  View view = view_of(model);
+  view.draw = Draw::uncompressed;
+  view.background = Background::environment;
+  for (const float exposure : {-1.0f, 0.0f, 3.0f}) {
+    view.exposure = exposure;
+    renderer_.set_model(model);
+    renderer_.set_lighting(lighting_from(test_light(5)));
+    const image::Image linear = renderer_.render(view, kWidth, kHeight, 1);
+    const gl::Target screen(gl::Format::rgba32f, kWidth, kHeight, false, 1);
+    renderer_.draw(view, kWidth, kHeight, 1);
+    screen.bind();
+    renderer_.develop(view);
+    std::vector<float> pixels(linear.pixels.size());
+    screen.read(pixels);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const float* const radiance = linear.at(x, y);
+        const Vec3 mapped =
+            tone_map(Vec3(radiance[0], radiance[1], radiance[2]) * std::exp2(exposure));
+        for (int c = 0; c < 3; ++c) {
+          const float v = std::clamp(mapped[c], 0.0f, 1.0f);
+          const float srgb = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+          const std::size_t row = static_cast<std::size_t>(kHeight - 1 - y);
+          EXPECT_NEAR(pixels[4 * (row * kWidth + static_cast<std::size_t>(x)) +
+                             static_cast<std::size_t>(c)],
+                      srgb, 2e-3f);
+        }
+      }
+  }
+}
+
+TEST_P(EveryApi, ModelWithTooManyComponentsIsRefusedAndTheOldOneStays) {
+  const mesh::Scene scene = scene_of({sphere(8, 8)});
+  const Lighting lighting = lighting_from(test_light(2));
+  const Model good = make_model(scene, random_transfer(scene.vertex_count(), 2, 1, 2, 2), {});
+  const image::Image before = render(good, Draw::single, lighting);
+  EXPECT_THROW(renderer_.set_model(
+                   make_model(scene, random_transfer(scene.vertex_count(), 2, 1, 2, 4000), {})),
+               Error);
+  EXPECT_EQ(largest_difference(before, renderer_.render(view_of(good), kWidth, kHeight, 1)), 0.0f);
+}
+
+}  // namespace
+}  // namespace prt::runtime
