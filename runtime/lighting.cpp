@@ -58,6 +58,18 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count) {
   return {std::move(light), std::move(map), true};
 }
 
+sh::Light default_light(int band_count) {
+  constexpr float kLampRadius = 0.35f;  // radians
+  sh::Light light = sh::constant_light(band_count, Vec3(0.25f, 0.28f, 0.33f));
+  const sh::Light lamp = sh::disk_light(band_count, Vec3(-1.0f, 1.2f, 1.0f).normalized(),
+                                        kLampRadius, Vec3(7.0f, 6.5f, 5.8f));
+  for (std::size_t color = 0; color < 3; ++color)
+    for (std::size_t k = 0; k < light.coefficients[color].size(); ++k)
+      light.coefficients[color][k] += lamp.coefficients[color][k];
+  light.source = "prtkit's lamp";
+  return light;
+}
+
 Matrix4 light_rotation(float degrees) {
   Matrix4 world_from_light;
   world_from_light.setAxisAngle(Vec3(0, 1, 0), degrees * std::numbers::pi_v<float> / 180.0f);

@@ -23,6 +23,9 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count);
 /// A given light, its background drawn from its coefficients.
 Lighting lighting_from(sh::Light light);
 
+/// When none is given: a warm lamp on the left, above and in front, and a dim sky.
+sh::Light default_light(int band_count);
+
 /// Turns light about +Y, counter-clockwise seen from above.
 Matrix4 light_rotation(float degrees);
 

@@ -76,6 +76,8 @@ std::string description() {
   return text(GL_VERSION) + ", " + text(GL_RENDERER);
 }
 
+void finish() { glFinish(); }
+
 void check_errors(const std::string& doing) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;

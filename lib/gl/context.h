@@ -62,6 +62,9 @@ Limits limits();
 /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe (…)".
 std::string description();
 
+/// Returns when all that was asked for is done.
+void finish();
+
 /// Throws Error (failed) when OpenGL has recorded an error: "OpenGL: out of memory while …".
 void check_errors(const std::string& doing);
 

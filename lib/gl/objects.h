@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/vec.h"
+#include "image/image.h"
 
 namespace prt::gl {
 
@@ -120,6 +121,8 @@ class Target {
 
 /// Draws to the window again.
 void bind_window(int width, int height);
+/// What has been drawn to it since the last swap: linear RGB, first row on top.
+image::Image read_window(int width, int height);
 
 /// Runs the program in use over the whole viewport; its vertex shader is fullscreen.vert. The array
 /// has no attributes.

@@ -1,8 +1,11 @@
 #include <epoxy/gl.h>
 
+#include <vector>
+
 #include "core/error.h"
 #include "gl/context.h"
 #include "gl/objects.h"
+#include "image/srgb.h"
 
 namespace prt::gl {
 
@@ -86,6 +89,22 @@ void Target::read(std::span<float> pixels) const {
 void bind_window(int width, int height) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, width, height);
+}
+
+image::Image read_window(int width, int height) {
+  const auto row_bytes = static_cast<std::size_t>(width) * 4;
+  std::vector<unsigned char> bytes(row_bytes * static_cast<std::size_t>(height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
+  check_errors("reading the window");
+  image::Image image(width, height, 3);
+  for (int y = 0; y < height; ++y) {
+    const unsigned char* const row = &bytes[row_bytes * static_cast<std::size_t>(height - 1 - y)];
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c)
+        image.at(x, y)[c] = image::linear_from_srgb(static_cast<float>(row[4 * x + c]) / 255.0f);
+  }
+  return image;
 }
 
 void draw_fullscreen(const VertexArray& no_attributes) {

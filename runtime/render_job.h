@@ -1,0 +1,49 @@
+// What prt-render does, as a library: options in, a picture file out.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "camera/camera.h"
+#include "core/report.h"
+#include "runtime/lighting.h"
+#include "runtime/renderer.h"
+
+namespace prt::runtime {
+
+/// Everything that says which picture is wanted, whoever renders it.
+struct PictureOptions {
+  std::filesystem::path model, output;
+  std::filesystem::path light;  ///< .json, or an environment map; empty: default_light
+  int band_count = 0;           ///< of a projected map; 0: as many as the transfer, else 5
+  float light_rotation = 0.0f;  ///< degrees about +Y, counter-clockwise seen from above
+  int width = 1024, height = 1024;
+  std::optional<Vec3> eye, target;  ///< unset: frame the model
+  Vec3 up{0.0f, 1.0f, 0.0f};
+  float vertical_fov = 40.0f;            ///< degrees
+  float exposure = 0.0f;                 ///< stops, for .png
+  std::optional<Background> background;  ///< unset: environment, or colour behind false colours
+  Vec3 background_color{0.1f, 0.1f, 0.1f};
+  bool no_clobber = false;
+};
+
+struct RenderOptions {
+  PictureOptions picture;
+  std::filesystem::path transfer;  ///< uncompressed; empty: none
+  std::optional<Draw> draw;        ///< unset: uncompressed when it is given, else single
+  Show show = Show::radiance;
+  int sample_count = 4;  ///< in a pixel; 1: at pixel centres
+  bool debug = false;    ///< log OpenGL's messages
+};
+
+/// The camera that the options ask for. Throws Error (usage).
+camera::Camera make_camera(const PictureOptions& options, const camera::Sphere& bounds);
+
+/// The options' light, as many bands as asked for or else `band_count`, not yet turned.
+Lighting make_lighting(const PictureOptions& options, int band_count);
+
+/// Renders without a window. Adds to the report: stages, "frame_seconds" (drawing and developing
+/// once more, everything warm), "light_change_seconds" (CPU), "opengl". Throws Error.
+void render(const RenderOptions& options, Report& report);
+
+}  // namespace prt::runtime

@@ -1,0 +1,162 @@
+#include "runtime/viewer.h"
+
+#include <epoxy/gl.h>
+// GLFW comes after epoxy, which stands in for the system's OpenGL header.
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "image/image.h"
+
+namespace prt::runtime {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+void open_dropped(GLFWwindow* window, int count, const char** paths) {
+  auto* const viewer = static_cast<Viewer*>(glfwGetWindowUserPointer(window));
+  for (int i = 0; i < count; ++i) viewer->open(paths[i]);
+}
+
+void start_ui(GLFWwindow* window) {
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // leave no file behind
+  ImGui::StyleColorsDark();
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+}  // namespace
+
+Viewer::Viewer(const ViewerOptions& options)
+    : options_(options),
+      start_(Clock::now()),
+      window_("prt-view", options.width, options.height, {.debug = options.debug}) {
+  if (!options_.screenshot.empty()) check_output(options_.screenshot, options_.no_clobber);
+  log::debug("OpenGL {}", gl::description());
+  glfwSetWindowUserPointer(window_.handle(), this);
+  glfwSetDropCallback(window_.handle(), open_dropped);
+  start_ui(window_.handle());
+  view_.draw = options_.draw;
+  view_.show = options_.show;
+  view_.exposure = options_.exposure;
+  view_.background_color = Vec3(0.03f);
+  if (!options_.model.empty()) load_model_file(options_.model, options_.transfer);
+  if (!renderer_.can_draw(view_.draw, view_.show)) view_.draw = Draw::uncompressed;
+  load_light_file(options_.light);
+}
+
+Viewer::~Viewer() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+double Viewer::run() {
+  double start_seconds = 0.0;
+  const bool interactive = options_.screenshot.empty();
+  while (!glfwWindowShouldClose(window_.handle())) {
+    const auto frame_start = Clock::now();
+    glfwPollEvents();
+    draw_frame();
+    if (!interactive &&
+        frame_count_ + 1 >= static_cast<std::size_t>(options_.screenshot_frame_count)) {
+      write_screenshot();
+      glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE);
+    }
+    glfwSwapBuffers(window_.handle());
+    const auto now = Clock::now();
+    frame_milliseconds_[frame_count_ % kTimingCount] =
+        std::chrono::duration<float, std::milli>(now - frame_start).count();
+    if (frame_count_++ == 0) start_seconds = std::chrono::duration<double>(now - start_).count();
+  }
+  return start_seconds;
+}
+
+void Viewer::open(const fs::path& path) {
+  try {
+    const std::string name = path.filename().string();
+    if (path.extension() == ".glb" || path.extension() == ".gltf")
+      load_model_file(path, {});
+    else if (name.ends_with(".transfer.exr"))
+      load_model_file(model_path_, path);
+    else
+      load_light_file(path);
+    message_.clear();
+  } catch (const std::exception& error) {
+    message_ = error.what();
+  }
+}
+
+void Viewer::load_model_file(const fs::path& path, const fs::path& transfer) {
+  if (path.empty()) throw_bad_input("open a model before its transfer");
+  const Model model = load_model(path, transfer);
+  renderer_.set_model(model);
+  const bool same_model = path == model_path_;
+  model_path_ = path;
+  model_band_count_ = model.band_count();
+  if (!same_model)
+    orbit_ = Orbit(
+        camera::frame(model.bounds, options_.vertical_fov,
+                      static_cast<float>(options_.width) / static_cast<float>(options_.height)));
+  model_text_ = fmt::format("{}\n{} vertices, {} triangles, {} bands", path.filename().string(),
+                            model.positions.size(), model.indices.size() / 3, model.band_count());
+  if (model.transfer)
+    model_text_ +=
+        fmt::format("\n{} clusters, {} components", model.transfer->encoding.cluster_count,
+                    model.transfer->encoding.component_count);
+  for (const Draw draw : {Draw::single, Draw::uncompressed})
+    if (!renderer_.can_draw(view_.draw, view_.show)) {
+      view_.draw = draw;
+      view_.show = Show::radiance;
+    }
+}
+
+void Viewer::load_light_file(const fs::path& path) {
+  const int usual = model_band_count_ > 0 ? model_band_count_ : 5;
+  const int bands = options_.band_count > 0 ? options_.band_count : usual;
+  const Lighting lighting =
+      path.empty() ? lighting_from(default_light(bands)) : load_lighting(path, bands);
+  renderer_.set_lighting(lighting);
+  light_text_ = path.empty() ? lighting.light.source : path.filename().string();
+}
+
+void Viewer::set_light_rotation(const Matrix4& world_from_light) {
+  world_from_light_ = world_from_light;
+  const auto start = Clock::now();
+  renderer_.set_light_rotation(world_from_light_);
+  light_change_milliseconds_ =
+      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void Viewer::draw_frame() {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  apply_input();
+  draw_panel();
+  ImGui::Render();
+  const gl::Window::Size size = window_.framebuffer_size();
+  if (size.width > 0 && size.height > 0) {  // not minimised
+    view_.camera = orbit_.camera(static_cast<float>(size.width) / static_cast<float>(size.height));
+    renderer_.draw(view_, size.width, size.height, sample_count_);
+    gl::bind_window(size.width, size.height);
+    renderer_.develop(view_);
+  }
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Viewer::write_screenshot() const {
+  const gl::Window::Size size = window_.framebuffer_size();
+  image::write_image(options_.screenshot, gl::read_window(size.width, size.height),
+                     options_.no_clobber);
+}
+
+}  // namespace prt::runtime

@@ -1,0 +1,80 @@
+// The interactive viewer: what prt-view does, as a library. A window, a model, a light; both are
+// exchanged by dropping files on the window.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "gl/context.h"
+#include "runtime/orbit.h"
+#include "runtime/renderer.h"
+
+namespace prt::runtime {
+
+struct ViewerOptions {
+  std::filesystem::path model;       ///< empty: wait for a drop
+  std::filesystem::path transfer;    ///< uncompressed; empty: none
+  std::filesystem::path light;       ///< empty: default_light
+  std::filesystem::path screenshot;  ///< empty: interactive; else write the window and end
+  int screenshot_frame_count = 3;    ///< frames drawn before the screenshot
+  int band_count = 0;                ///< of a projected map; 0: as the model
+  int width = 1280, height = 800;    ///< of the window
+  Draw draw = Draw::single;
+  Show show = Show::radiance;
+  float exposure = 0.0f;       ///< stops
+  float vertical_fov = 40.0f;  ///< degrees
+  bool no_clobber = false;
+  bool debug = false;
+};
+
+class Viewer {
+ public:
+  /// Opens the window and loads the files. Throws Error.
+  explicit Viewer(const ViewerOptions& options);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// Until the window is closed or the screenshot is written. Returns seconds from the start of
+  /// construction to the first frame on the screen.
+  double run();
+
+  /// What a drop does: a model (.glb .gltf), an uncompressed transfer (.transfer.exr) of the model
+  /// or a light (anything else). When the file is bad, what there was stays, and message() says
+  /// why.
+  void open(const std::filesystem::path& path);
+  const std::string& message() const { return message_; }
+
+ private:
+  void load_model_file(const std::filesystem::path& model, const std::filesystem::path& transfer);
+  void load_light_file(const std::filesystem::path& path);
+  void apply_input();
+  void draw_frame();
+  void draw_panel();
+  void draw_mode_choice();
+  void draw_timings();
+  void turn_light(float dx, float dy);
+  void set_light_rotation(const Matrix4& world_from_light);
+  void write_screenshot() const;
+
+  static constexpr std::size_t kTimingCount = 120;
+
+  ViewerOptions options_;
+  std::chrono::steady_clock::time_point start_;
+  gl::Window window_;
+  Renderer renderer_;
+  Orbit orbit_;
+  View view_;
+  int sample_count_ = 4;
+  std::filesystem::path model_path_;
+  std::string model_text_, light_text_, message_;
+  int model_band_count_ = 0;
+  Matrix4 world_from_light_;
+  std::array<float, kTimingCount> frame_milliseconds_{};
+  std::size_t frame_count_ = 0;
+  double light_change_milliseconds_ = 0.0;
+};
+
+}  // namespace prt::runtime

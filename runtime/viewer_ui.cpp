@@ -1,0 +1,111 @@
+// The viewer's panel and its mouse.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "runtime/viewer.h"
+
+namespace prt::runtime {
+
+namespace {
+
+struct Mode {
+  const char* name;
+  Draw draw;
+  Show show;
+};
+
+constexpr Mode kModes[] = {{"Compressed, one draw", Draw::single, Show::radiance},
+                           {"Compressed, by clusters", Draw::clusters, Show::radiance},
+                           {"Uncompressed", Draw::uncompressed, Show::radiance},
+                           {"Cluster colours", Draw::single, Show::clusters},
+                           {"Error heat map", Draw::single, Show::error}};
+
+bool is_current(const Mode& mode, const View& view) {
+  return mode.show == view.show && (mode.show != Show::radiance || mode.draw == view.draw);
+}
+
+}  // namespace
+
+void Viewer::apply_input() {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse || io.DisplaySize.y <= 0.0f) return;
+  const float dx = io.MouseDelta.x, dy = io.MouseDelta.y, height = io.DisplaySize.y;
+  const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Right) || (left && io.KeyShift))
+    turn_light(dx, dy);
+  else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyCtrl))
+    orbit_.pan(dx, dy, height);
+  else if (left)
+    orbit_.rotate(dx, dy, height);
+  if (io.MouseWheel != 0.0f) orbit_.zoom(io.MouseWheel);
+}
+
+void Viewer::turn_light(float dx, float dy) {
+  if (dx == 0.0f && dy == 0.0f) return;
+  const float radians_per_pixel = std::numbers::pi_v<float> / ImGui::GetIO().DisplaySize.y;
+  Matrix4 about_up, about_right;
+  about_up.setAxisAngle(Vec3(0, 1, 0), dx * radians_per_pixel);
+  about_right.setAxisAngle(view_.camera.axes().right, dy * radians_per_pixel);
+  set_light_rotation(world_from_light_ * about_up * about_right);
+}
+
+void Viewer::draw_panel() {
+  ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
+  ImGui::Begin("prtkit", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+  if (model_text_.empty())
+    ImGui::TextUnformatted("Drop a baked .glb here");
+  else
+    ImGui::TextUnformatted(model_text_.c_str());
+  ImGui::Separator();
+  draw_mode_choice();
+  ImGui::SliderFloat("Exposure", &view_.exposure, -6.0f, 6.0f, "%+.1f stops");
+  ImGui::Text("Light: %s", light_text_.c_str());
+  bool background = view_.background == Background::environment;
+  if (ImGui::Checkbox("Background", &background))
+    view_.background = background ? Background::environment : Background::color;
+  ImGui::SameLine();
+  if (ImGui::Button("Reset light")) set_light_rotation(Matrix4());
+  ImGui::Separator();
+  draw_timings();
+  ImGui::TextDisabled(
+      "drag: orbit   right or shift drag: light\nmiddle or ctrl drag: pan   wheel: zoom");
+  if (!message_.empty()) {
+    ImGui::Separator();
+    ImGui::PushTextWrapPos(380.0f);
+    ImGui::TextColored({1.0f, 0.45f, 0.4f, 1.0f}, "%s", message_.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::SmallButton("Dismiss")) message_.clear();
+  }
+  ImGui::End();
+}
+
+void Viewer::draw_mode_choice() {
+  const auto current = std::find_if(std::begin(kModes), std::end(kModes),
+                                    [&](const Mode& mode) { return is_current(mode, view_); });
+  if (!ImGui::BeginCombo("Show", current->name)) return;
+  for (const Mode& mode : kModes) {
+    const bool possible = renderer_.can_draw(mode.draw, mode.show);
+    const ImGuiSelectableFlags flags = possible ? 0 : ImGuiSelectableFlags_Disabled;
+    if (!ImGui::Selectable(mode.name, &mode == current, flags)) continue;
+    view_.draw = mode.draw;
+    view_.show = mode.show;
+  }
+  ImGui::EndCombo();
+}
+
+void Viewer::draw_timings() {
+  const std::size_t known_count = std::min(frame_count_, kTimingCount);
+  const float last =
+      known_count > 0 ? frame_milliseconds_[(frame_count_ - 1) % kTimingCount] : 0.0f;
+  const float slowest = *std::max_element(frame_milliseconds_.begin(), frame_milliseconds_.end());
+  const std::string text = fmt::format("{:.1f} ms", last);
+  ImGui::PlotLines("Frame", frame_milliseconds_.data(), static_cast<int>(kTimingCount),
+                   static_cast<int>(frame_count_ % kTimingCount), text.c_str(), 0.0f,
+                   1.2f * slowest, {240, 48});
+  ImGui::Text("Last light change: %.2f ms on the CPU", light_change_milliseconds_);
+}
+
+}  // namespace prt::runtime

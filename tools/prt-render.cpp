@@ -1,0 +1,131 @@
+// prt-render: pictures of a model under a light, without a window. The work is in
+// runtime/render_job.h and runtime/reference/reference_job.h.
+#include <array>
+#include <map>
+#include <string>
+
+#include "cli/tool.h"
+#include "runtime/reference/reference_job.h"
+#include "runtime/render_job.h"
+
+namespace {
+
+using prt::runtime::Background;
+using prt::runtime::Draw;
+using prt::runtime::PictureOptions;
+using prt::runtime::Show;
+
+const std::map<std::string, Draw> kDraws = {
+    {"single", Draw::single}, {"clusters", Draw::clusters}, {"uncompressed", Draw::uncompressed}};
+const std::map<std::string, Show> kShows = {
+    {"radiance", Show::radiance}, {"clusters", Show::clusters}, {"error", Show::error}};
+const std::map<std::string, Background> kBackgrounds = {{"environment", Background::environment},
+                                                        {"color", Background::color},
+                                                        {"none", Background::none}};
+
+/// --name X,Y,Z
+template <class Vector>
+void add_vector(CLI::App& app, const char* name, Vector& value, const std::string& description) {
+  app.add_option_function<std::vector<float>>(
+         name, [&value](const std::vector<float>& v) { value = prt::Vec3(v[0], v[1], v[2]); },
+         description)
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+}
+
+template <class Enum, class Value>
+void add_choice(CLI::App& app, const char* name, Value& value,
+                const std::map<std::string, Enum>& names, const std::string& description) {
+  std::string choices;
+  for (const auto& [choice, _] : names) choices += (choices.empty() ? "" : "|") + choice;
+  app.add_option_function<std::string>(
+         name, [&](const std::string& text) { value = names.at(text); }, description)
+      ->check(CLI::IsMember(names))
+      ->type_name(choices);
+}
+
+void add_picture_options(CLI::App& app, PictureOptions& options) {
+  app.add_option("model", options.model, "The model, .glb or .gltf")->required();
+  app.add_option("-o,--output", options.output, "The picture: .png, or .exr (linear, alpha)")
+      ->required();
+  app.add_option_function<std::string>(
+         "--size",
+         [&](const std::string& size) {
+           char end = 0;
+           if (std::sscanf(size.c_str(), "%5dx%5d%c", &options.width, &options.height, &end) != 2 ||
+               options.width < 1 || options.height < 1)
+             throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT, found " + size);
+         },
+         "Width and height in pixels [1024x1024]")
+      ->type_name("WxH");
+
+  app.option_defaults()->group("Light");
+  app.add_option("--light", options.light,
+                 "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
+  app.add_option("--bands", options.band_count,
+                 "Bands that a map is projected to; 0: those of the transfer, else 5")
+      ->check(CLI::Range(0, 16));
+  app.add_option("--rotate-light", options.light_rotation,
+                 "Turn the light about +Y, degrees, counter-clockwise from above");
+
+  app.option_defaults()->group("Camera");
+  add_vector(app, "--eye", options.eye, "Where the camera stands [frames the model]");
+  add_vector(app, "--target", options.target, "What it looks at [the model's middle]");
+  add_vector(app, "--up", options.up, "Up in the picture [0,1,0]");
+  app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees");
+
+  app.option_defaults()->group("Picture");
+  app.add_option("--exposure", options.exposure, "Stops, for .png");
+  add_choice(app, "--background", options.background, kBackgrounds,
+             "Behind the model [environment]");
+  add_vector(app, "--background-color", options.background_color, "Linear [0.1,0.1,0.1]");
+}
+
+void add_render_options(CLI::App& app, prt::runtime::RenderOptions& options) {
+  app.option_defaults()->group("Real-time rendering");
+  app.add_option("--transfer", options.transfer, "Uncompressed transfer of prt-transfer (.exr)");
+  add_choice(app, "--draw", options.draw, kDraws,
+             "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
+             "with --transfer]");
+  add_choice(app, "--show", options.show, kShows, "What to show [radiance]");
+  app.add_option("--antialias", options.sample_count,
+                 "Samples in a pixel, at most what the driver has; 1: pixel centres")
+      ->check(CLI::Range(1, 64));
+}
+
+void add_reference_options(CLI::App& app, prt::runtime::ReferenceOptions& options,
+                           bool& reference) {
+  app.option_defaults()->group("Reference");
+  app.add_flag("--reference", reference, "Path trace instead: ground truth, no transfer needed");
+  app.add_option("--samples", options.sample_count, "Paths in a pixel")
+      ->check(CLI::Range(1, 1 << 20));
+  app.add_option("--bounces", options.bounce_count, "Interreflections; 0: direct light only")
+      ->check(CLI::Range(0, 64));
+  app.add_option_function<std::string>(
+         "--light-mode", [&](const std::string& mode) { options.full_map = mode == "full"; },
+         "Light of the bands, or the full environment map [band-limited]")
+      ->check(CLI::IsMember({"band-limited", "full"}));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  prt::cli::Tool tool("prt-render", "Renders a baked model under a light, without a window.",
+                      "prt-render bunny.prt.glb --light sunset.json -o bunny.png --size 1024x1024");
+  prt::runtime::RenderOptions options;
+  prt::runtime::ReferenceOptions reference_options;
+  bool reference = false;
+  add_picture_options(tool.app(), options.picture);
+  add_render_options(tool.app(), options);
+  add_reference_options(tool.app(), reference_options, reference);
+  return tool.run(argc, argv, [&](prt::Report& report) {
+    options.picture.no_clobber = tool.common().no_clobber;
+    options.debug = tool.common().verbose;
+    if (!reference) return prt::runtime::render(options, report);
+    reference_options.picture = options.picture;
+    reference_options.box_filter = options.sample_count > 1;
+    reference_options.seed = tool.common().seed;
+    prt::runtime::render_reference(reference_options, report);
+  });
+}

@@ -1,0 +1,58 @@
+// prt-view: the interactive viewer. The work is in runtime/viewer.h.
+#include <map>
+#include <string>
+
+#include "cli/tool.h"
+#include "runtime/viewer.h"
+
+namespace {
+
+using prt::runtime::Draw;
+using prt::runtime::Show;
+using prt::runtime::ViewerOptions;
+
+/// Names of what the window shows first; the panel has the same.
+const std::map<std::string, std::pair<Draw, Show>> kModes = {
+    {"single", {Draw::single, Show::radiance}},
+    {"clusters", {Draw::clusters, Show::radiance}},
+    {"uncompressed", {Draw::uncompressed, Show::radiance}},
+    {"cluster-colors", {Draw::single, Show::clusters}},
+    {"error", {Draw::single, Show::error}}};
+
+void add_options(CLI::App& app, ViewerOptions& options) {
+  app.add_option("model", options.model, "A model of prt-compress (.glb); none: drop one");
+  app.add_option("--transfer", options.transfer, "Its uncompressed transfer, to compare");
+  app.add_option("--light", options.light,
+                 "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
+  app.add_option("--bands", options.band_count, "Bands that a map is projected to; 0: the model's")
+      ->check(CLI::Range(0, 16));
+  app.add_option_function<std::string>(
+         "--mode",
+         [&](const std::string& mode) { std::tie(options.draw, options.show) = kModes.at(mode); },
+         "What to show first [single]")
+      ->check(CLI::IsMember(kModes));
+  app.add_option("--exposure", options.exposure, "Stops");
+  app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees")
+      ->check(CLI::Range(1.0, 170.0));
+  app.option_defaults()->group("Screenshot");
+  app.add_option("--screenshot", options.screenshot, "Write the window to a .png and end");
+  app.add_option("--frames", options.screenshot_frame_count, "Frames drawn before the screenshot")
+      ->check(CLI::Range(1, 100000));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  prt::cli::Tool tool("prt-view",
+                      "Shows a baked model in a window. Drag to orbit, drag with the right button "
+                      "to turn the light, drop models and lights on it.",
+                      "prt-view bunny.prt.glb --light sunset.json");
+  ViewerOptions options;
+  add_options(tool.app(), options);
+  return tool.run(argc, argv, [&](prt::Report& report) {
+    options.no_clobber = tool.common().no_clobber;
+    options.debug = tool.common().verbose;
+    prt::runtime::Viewer viewer(options);
+    report.json()["start_seconds"] = viewer.run();
+  });
+}
