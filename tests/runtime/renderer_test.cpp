@@ -62,7 +62,7 @@ TEST_P(EveryApi, BothWaysOfDrawingCompressedTransferGiveTheSamePixels) {
       for (const int samples : {1, 4})
         EXPECT_LT(largest_difference(render(model, Draw::single, lighting, samples),
                                      render(model, Draw::clusters, lighting, samples)),
-                  1e-4f)
+                  1e-3f)  // a quarter of 1/255; radiance reaches 10
             << channel_count << " channels, " << component_count << " components";
     }
 }
