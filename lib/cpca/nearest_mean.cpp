@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace prt::cpca {
@@ -59,30 +60,35 @@ template <class T>
   }
 }
 
-/// The greater score of each pair of lanes, of equals the lower label.
-template <class T>
-[[gnu::always_inline]] inline void keep_better(typename T::Floats& score, typename T::Ints& label,
-                                               const typename T::Floats& other_score,
-                                               const typename T::Ints& other_label) {
-  const auto better = (other_score > score) | ((other_score == score) & (other_label < label));
-  score = better ? other_score : score;
-  label = better ? other_label : label;
+/// Label of the greatest score, of equals the lowest label, by halves.
+template <int Bytes>
+[[gnu::always_inline]] inline std::uint32_t reduce_lanes(
+    const typename Tile<Bytes, 1>::Floats& score, const typename Tile<Bytes, 1>::Ints& label) {
+  if constexpr (Bytes == 4) {
+    return static_cast<std::uint32_t>(label[0]);
+  } else {
+    using Half = Tile<Bytes / 2, 1>;
+    typename Half::Floats scores[2];
+    typename Half::Ints labels[2];
+    std::memcpy(scores, &score, Bytes);
+    std::memcpy(labels, &label, Bytes);
+    const auto second =
+        (scores[1] > scores[0]) | ((scores[1] == scores[0]) & (labels[1] < labels[0]));
+    return reduce_lanes<Bytes / 2>(second ? scores[1] : scores[0], second ? labels[1] : labels[0]);
+  }
 }
 
-/// Label of one point from the best of every lane.
+/// Label of one point of a tile from the best of every lane.
 template <class T>
-[[gnu::always_inline]] inline std::uint32_t reduce_lanes(const Best<T>& best, int row) {
+[[gnu::always_inline]] inline std::uint32_t find_label(const Best<T>& best, int row) {
   typename T::Ints lane;
   for (int i = 0; i < T::kLanes; ++i) lane[i] = i;
-  auto score = best.score[row][0];
-  auto label = best.panel[row][0] * T::kPanel + lane;
-  keep_better<T>(score, label, best.score[row][1],
-                 best.panel[row][1] * T::kPanel + lane + T::kLanes);
-  for (int step = T::kLanes / 2; step > 0; step /= 2) {
-    keep_better<T>(score, label, __builtin_shuffle(score, lane ^ step),
-                   __builtin_shuffle(label, lane ^ step));
-  }
-  return static_cast<std::uint32_t>(label[0]);
+  const auto label = best.panel[row][0] * T::kPanel + lane;
+  const auto other = best.panel[row][1] * T::kPanel + lane + T::kLanes;
+  const auto second = (best.score[row][1] > best.score[row][0]) |
+                      ((best.score[row][1] == best.score[row][0]) & (other < label));
+  return reduce_lanes<T::kLanes * 4>(second ? best.score[row][1] : best.score[row][0],
+                                     second ? other : label);
 }
 
 /// The last tile is filled up with its first point.
@@ -107,7 +113,7 @@ template <class T>
                        static_cast<std::int32_t>(p), best);
     }
     for (std::size_t r = 0; r < row_count; ++r) {
-      labels[done + r] = reduce_lanes<T>(best, static_cast<int>(r));
+      labels[done + r] = find_label<T>(best, static_cast<int>(r));
     }
   }
 }
@@ -116,9 +122,9 @@ using Kernel = void(const float* points, std::size_t count, std::size_t dimensio
                     const float* panels, const float* biases, std::size_t panel_count,
                     std::uint32_t* labels);
 
-[[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,prefer-vector-width=512")]] void
-classify_avx512(const float* points, std::size_t count, std::size_t dimension, const float* panels,
-                const float* biases, std::size_t panel_count, std::uint32_t* labels) {
+[[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]] void classify_avx512(
+    const float* points, std::size_t count, std::size_t dimension, const float* panels,
+    const float* biases, std::size_t panel_count, std::uint32_t* labels) {
   classify_points<TileAvx512>(points, count, dimension, panels, biases, panel_count, labels);
 }
 
