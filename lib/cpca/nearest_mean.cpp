@@ -29,33 +29,42 @@ struct Best {
   typename T::Ints panel[T::kRows][2];
 };
 
-/// Scores of one tile of points against one panel of means, of which the best so far are kept.
+/// Scores of a tile of points, `stride` floats apart, against one panel of means; the best so far
+/// are kept. Few pointers, so that none is spilled in the loop: three rows hang on each.
 template <class T>
-[[gnu::always_inline]] inline void multiply_tile(const float* const* rows, std::size_t dimension,
+[[gnu::always_inline]] inline void multiply_tile(const float* points, std::size_t stride,
                                                  const float* means, const float* biases,
-                                                 std::int32_t panel, Best<T>& best) {
+                                                 std::int32_t panel, Best<T>* best) {
   using Floats = typename T::Floats;
   const auto* mean = reinterpret_cast<const Floats*>(means);
   const auto* bias = reinterpret_cast<const Floats*>(biases);
+  constexpr int kPointers = (T::kRows + 2) / 3;
+  const float* rows[kPointers];
   Floats sum[T::kRows][2];
 #pragma GCC unroll 16
+  for (int r = 0; r < kPointers; ++r) rows[r] = points + static_cast<std::size_t>(3 * r) * stride;
+#pragma GCC unroll 16
   for (int r = 0; r < T::kRows; ++r) sum[r][0] = bias[0], sum[r][1] = bias[1];
-  for (std::size_t i = 0; i < dimension; ++i) {
-    const Floats first = mean[2 * i], second = mean[2 * i + 1];
+  for (std::size_t i = 0; i < stride; ++i) {
+    const Floats first = mean[0], second = mean[1];
+    mean += 2;
 #pragma GCC unroll 16
     for (int r = 0; r < T::kRows; ++r) {
-      const float x = rows[r][i];
+      const float x = rows[r / 3][static_cast<std::size_t>(r % 3) * stride];
       sum[r][0] += first * x;
       sum[r][1] += second * x;
     }
+#pragma GCC unroll 16
+    for (int r = 0; r < kPointers; ++r) ++rows[r];
   }
+  asm("" : "+r"(best));  // stays in memory: registers are for the sums
 #pragma GCC unroll 16
   for (int r = 0; r < T::kRows; ++r) {
 #pragma GCC unroll 2
     for (int v = 0; v < 2; ++v) {
-      const auto better = sum[r][v] > best.score[r][v];
-      best.score[r][v] = better ? sum[r][v] : best.score[r][v];
-      best.panel[r][v] = better ? typename T::Ints{} + panel : best.panel[r][v];
+      const auto better = sum[r][v] > best->score[r][v];
+      best->score[r][v] = better ? sum[r][v] : best->score[r][v];
+      best->panel[r][v] = better ? typename T::Ints{} + panel : best->panel[r][v];
     }
   }
 }
@@ -91,30 +100,39 @@ template <class T>
                                      second ? other : label);
 }
 
-/// The last tile is filled up with its first point.
+template <class T>
+[[gnu::always_inline]] inline void classify_tile(const float* points, std::size_t dimension,
+                                                 const float* panels, const float* biases,
+                                                 std::size_t panel_count, std::uint32_t* labels) {
+  Best<T> best{};
+  for (auto& row : best.score) {
+    for (auto& score : row) score -= std::numeric_limits<float>::infinity();
+  }
+  for (std::size_t p = 0; p < panel_count; ++p) {
+    multiply_tile<T>(points, dimension, panels + p * dimension * T::kPanel, biases + p * T::kPanel,
+                     static_cast<std::int32_t>(p), &best);
+  }
+  for (int r = 0; r < T::kRows; ++r) labels[r] = find_label<T>(best, r);
+}
+
+/// The last tile overlaps the one before it. Too few points for one tile are copied into one.
 template <class T>
 [[gnu::always_inline]] inline void classify_points(const float* points, std::size_t count,
                                                    std::size_t dimension, const float* panels,
                                                    const float* biases, std::size_t panel_count,
                                                    std::uint32_t* labels) {
-  const float* rows[T::kRows];
-  Best<T> start{};
-  for (auto& row : start.score) {
-    for (auto& score : row) score -= std::numeric_limits<float>::infinity();
+  if (count < T::kRows) {
+    std::vector<float> tile(T::kRows * dimension);
+    std::uint32_t tile_labels[T::kRows];
+    std::copy_n(points, count * dimension, tile.begin());
+    classify_tile<T>(tile.data(), dimension, panels, biases, panel_count, tile_labels);
+    std::copy_n(tile_labels, count, labels);
+    return;
   }
   for (std::size_t done = 0; done < count; done += T::kRows) {
-    const std::size_t row_count = std::min<std::size_t>(T::kRows, count - done);
-    for (std::size_t r = 0; r < T::kRows; ++r) {
-      rows[r] = points + (done + (r < row_count ? r : 0)) * dimension;
-    }
-    Best<T> best = start;
-    for (std::size_t p = 0; p < panel_count; ++p) {
-      multiply_tile<T>(rows, dimension, panels + p * dimension * T::kPanel, biases + p * T::kPanel,
-                       static_cast<std::int32_t>(p), best);
-    }
-    for (std::size_t r = 0; r < row_count; ++r) {
-      labels[done + r] = find_label<T>(best, static_cast<int>(r));
-    }
+    const std::size_t first = std::min(done, count - T::kRows);
+    classify_tile<T>(points + first * dimension, dimension, panels, biases, panel_count,
+                     labels + first);
   }
 }
 
