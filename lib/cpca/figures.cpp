@@ -42,4 +42,11 @@ Figures summarize(std::span<const double> errors, std::span<const float> rows) {
   return figures;
 }
 
+std::size_t storage_bytes(const Encoding& encoding) {
+  const std::size_t numbers =
+      encoding.weights.size() + encoding.means.size() + encoding.bases.size();
+  const std::size_t index_bytes = encoding.cluster_count <= 65536 ? 2 : 4;
+  return numbers * sizeof(float) + encoding.point_count * index_bytes;
+}
+
 }  // namespace prt::cpca

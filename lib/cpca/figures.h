@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "cpca/encoding.h"
+
 namespace prt::cpca {
 
 struct Figures {
@@ -17,5 +19,9 @@ struct Figures {
 
 /// Figures of some consecutive points: their errors (point_errors) and their rows of the signal.
 Figures summarize(std::span<const double> errors, std::span<const float> rows);
+
+/// Bytes of an encoding with float32 numbers and cluster indices of 16 bits, or 32 where they need
+/// it: the storage of [Sloan03] §4.1, m_p n' + m_c (n' + 1) n numbers, and the indices.
+std::size_t storage_bytes(const Encoding& encoding);
 
 }  // namespace prt::cpca
