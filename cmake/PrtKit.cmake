@@ -28,10 +28,11 @@ function(prt_module name)
   target_link_libraries(prt_${name} PUBLIC prt_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE})
 endfunction()
 
-# prt_test(NAME DEPENDS libraries…): test_NAME from every *_test.cpp of tests/NAME, one CTest entry.
+# prt_test(NAME DEPENDS libraries… LAUNCHER command…): test_NAME from every *_test.cpp of
+# tests/NAME, one CTest entry, run by the command if one is given.
 # Tests run in the source folder's tests/ so that they name their data relative to it.
 function(prt_test name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LAUNCHER" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${name}/*.cpp ${name}/*.h)
   if(NOT sources)
     return()
@@ -39,5 +40,6 @@ function(prt_test name)
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-  add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/tests)
+  add_test(NAME ${name} COMMAND ${ARG_LAUNCHER} $<TARGET_FILE:test_${name}>
+           WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/tests)
 endfunction()

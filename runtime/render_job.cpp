@@ -21,9 +21,9 @@ View make_view(const RenderOptions& options, const Model& model) {
   view.camera = make_camera(options.picture, model.bounds);
   view.draw = options.draw.value_or(model.signal ? Draw::uncompressed : Draw::single);
   view.show = options.show;
-  const Background usual =
-      options.show == Show::radiance ? Background::environment : Background::color;
-  view.background = options.picture.background.value_or(usual);
+  const bool has_environment = options.show == Show::radiance && !options.picture.light.empty();
+  view.background = options.picture.background.value_or(has_environment ? Background::environment
+                                                                        : Background::color);
   view.background_color = options.picture.background_color;
   view.exposure = options.picture.exposure;
   return view;

@@ -22,7 +22,8 @@ struct PictureOptions {
   Vec3 up{0.0f, 1.0f, 0.0f};
   float vertical_fov = 40.0f;            ///< degrees
   float exposure = 0.0f;                 ///< stops, for .png
-  std::optional<Background> background;  ///< unset: environment, or colour behind false colours
+  std::optional<Background> background;  ///< unset: environment, or colour without --light
+                                         ///< and behind false colours
   Vec3 background_color{0.1f, 0.1f, 0.1f};
   bool no_clobber = false;
 };

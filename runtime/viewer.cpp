@@ -25,7 +25,9 @@ void open_dropped(GLFWwindow* window, int count, const char** paths) {
   for (int i = 0; i < count; ++i) viewer->open(paths[i]);
 }
 
-void start_ui(GLFWwindow* window) {
+}  // namespace
+
+UserInterface::UserInterface(GLFWwindow* window) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // leave no file behind
   ImGui::StyleColorsDark();
@@ -33,30 +35,27 @@ void start_ui(GLFWwindow* window) {
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
-}  // namespace
+UserInterface::~UserInterface() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
 
 Viewer::Viewer(const ViewerOptions& options)
     : options_(options),
       start_(Clock::now()),
-      window_("prt-view", options.width, options.height, {.debug = options.debug}) {
+      window_("prt-view", options.width, options.height, {.debug = options.debug}),
+      interface_(window_.handle()) {
   if (!options_.screenshot.empty()) check_output(options_.screenshot, options_.no_clobber);
   log::debug("OpenGL {}", gl::description());
   glfwSetWindowUserPointer(window_.handle(), this);
   glfwSetDropCallback(window_.handle(), open_dropped);
-  start_ui(window_.handle());
   view_.draw = options_.draw;
   view_.show = options_.show;
   view_.exposure = options_.exposure;
   view_.background_color = Vec3(0.03f);
   if (!options_.model.empty()) load_model_file(options_.model, options_.transfer);
-  if (!renderer_.can_draw(view_.draw, view_.show)) view_.draw = Draw::uncompressed;
   load_light_file(options_.light);
-}
-
-Viewer::~Viewer() {
-  ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
 }
 
 double Viewer::run() {
@@ -125,6 +124,7 @@ void Viewer::load_light_file(const fs::path& path) {
   const Lighting lighting =
       path.empty() ? lighting_from(default_light(bands)) : load_lighting(path, bands);
   renderer_.set_lighting(lighting);
+  view_.background = path.empty() ? Background::color : Background::environment;
   light_text_ = path.empty() ? lighting.light.source : path.filename().string();
 }
 

@@ -29,11 +29,19 @@ struct ViewerOptions {
   bool debug = false;
 };
 
+/// Dear ImGui in a window.
+class UserInterface {
+ public:
+  explicit UserInterface(GLFWwindow* window);
+  ~UserInterface();
+  UserInterface(const UserInterface&) = delete;
+  UserInterface& operator=(const UserInterface&) = delete;
+};
+
 class Viewer {
  public:
   /// Opens the window and loads the files. Throws Error.
   explicit Viewer(const ViewerOptions& options);
-  ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
@@ -64,6 +72,7 @@ class Viewer {
   ViewerOptions options_;
   std::chrono::steady_clock::time_point start_;
   gl::Window window_;
+  UserInterface interface_;
   Renderer renderer_;
   Orbit orbit_;
   View view_;

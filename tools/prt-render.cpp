@@ -37,28 +37,16 @@ void add_vector(CLI::App& app, const char* name, Vector& value, const std::strin
 template <class Enum, class Value>
 void add_choice(CLI::App& app, const char* name, Value& value,
                 const std::map<std::string, Enum>& names, const std::string& description) {
-  std::string choices;
-  for (const auto& [choice, _] : names) choices += (choices.empty() ? "" : "|") + choice;
   app.add_option_function<std::string>(
          name, [&](const std::string& text) { value = names.at(text); }, description)
       ->check(CLI::IsMember(names))
-      ->type_name(choices);
+      ->type_name("NAME");
 }
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("model", options.model, "The model, .glb or .gltf")->required();
   app.add_option("-o,--output", options.output, "The picture: .png, or .exr (linear, alpha)")
       ->required();
-  app.add_option_function<std::string>(
-         "--size",
-         [&](const std::string& size) {
-           char end = 0;
-           if (std::sscanf(size.c_str(), "%5dx%5d%c", &options.width, &options.height, &end) != 2 ||
-               options.width < 1 || options.height < 1)
-             throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT, found " + size);
-         },
-         "Width and height in pixels [1024x1024]")
-      ->type_name("WxH");
 
   app.option_defaults()->group("Light");
   app.add_option("--light", options.light,
@@ -76,6 +64,16 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees");
 
   app.option_defaults()->group("Picture");
+  app.add_option_function<std::string>(
+         "--size",
+         [&](const std::string& size) {
+           char end = 0;
+           if (std::sscanf(size.c_str(), "%5dx%5d%c", &options.width, &options.height, &end) != 2 ||
+               options.width < 1 || options.height < 1)
+             throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT, found " + size);
+         },
+         "Width and height in pixels [1024x1024]")
+      ->type_name("WxH");
   app.add_option("--exposure", options.exposure, "Stops, for .png");
   add_choice(app, "--background", options.background, kBackgrounds,
              "Behind the model [environment]");
