@@ -6,7 +6,6 @@
 #include <array>
 #include <string_view>
 
-#include "core/checked.h"
 #include "core/error.h"
 #include "gltf/accessor.h"
 
@@ -80,9 +79,10 @@ void check_views(const State& state) {
     const std::size_t offset = optional_count(views[i], "byteOffset", 0, where);
     const std::size_t length = required_count(views[i], "byteLength", where);
     const std::size_t stride = optional_count(views[i], "byteStride", 4, where);
-    if (checked_add(offset, length) > state.buffers[buffer].size()) {
+    const std::size_t available = state.buffers[buffer].size();
+    if (offset > available || length > available - offset) {
       reject(where, "runs past the end of its buffer", fmt::format("{} + {} bytes", offset, length),
-             fmt::format("at most {}", state.buffers[buffer].size()));
+             fmt::format("at most {}", available));
     }
     if (stride < 4 || stride > 252 || stride % 4 != 0) {
       reject(where, "bad stride", std::to_string(stride), "a multiple of 4 from 4 to 252");
@@ -103,12 +103,13 @@ void check_range(const State& state, const Json& source, std::size_t count, std:
     reject(where, "elements larger than the stride of their view", std::to_string(size),
            fmt::format("at most {} bytes", stride));
   }
-  const std::size_t end =
-      count == 0 ? offset
-                 : checked_add(offset, checked_add(checked_multiply(count - 1, stride), size));
-  if (end > length) {
-    reject(where, "runs past the end of its buffer view", fmt::format("{} bytes", end),
-           fmt::format("at most {}", length));
+  // offset + (count - 1) stride + size <= length, without overflow
+  const std::size_t available = offset > length ? 0 : length - offset;
+  if (offset > length ||
+      (count > 0 && (size > available || count - 1 > (available - size) / stride))) {
+    reject(where, "runs past the end of its buffer view",
+           fmt::format("{} elements from byte {}", count, offset),
+           fmt::format("a view of more than {} bytes", length));
   }
   if ((offset + view.value("byteOffset", std::size_t{0})) % component != 0) {
     reject(where, "not aligned to its components", fmt::format("offset {}", offset),

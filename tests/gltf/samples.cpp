@@ -67,6 +67,28 @@ PrecomputedTransfer transfer(std::size_t vertex_count, int cluster_count, int co
   return transfer;
 }
 
+nlohmann::ordered_json triangle_json() {
+  return nlohmann::ordered_json::parse(R"({
+    "asset": {"version": "2.0"},
+    "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 2}, "indices": 1}]}],
+    "buffers": [{"byteLength": 42, "uri": "data:application/octet-stream;base64,)"
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"
+    R"("}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36},
+                    {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+    "accessors": [
+      {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+       "min": [0, 0, 0], "max": [1, 1, 0]},
+      {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"},
+      {"componentType": 5126, "count": 3, "type": "VEC3",
+       "sparse": {"count": 3, "indices": {"bufferView": 1, "componentType": 5123},
+                  "values": {"bufferView": 0}}}]
+  })");
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "prtkit-XXXXXX").string();
   path_ = mkdtemp(pattern.data());

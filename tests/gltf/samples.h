@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "gltf/document.h"
@@ -15,6 +16,10 @@ mesh::Scene scene();
 /// A transfer of arbitrary numbers for `vertex_count` vertices.
 PrecomputedTransfer transfer(std::size_t vertex_count, int cluster_count = 3,
                              int component_count = 5);
+
+/// A triangle with indices as plain .gltf, its buffer a data URI of 36 + 6 bytes in two views; to be
+/// broken in one place.
+nlohmann::ordered_json triangle_json();
 
 /// A folder of this test's own, removed with the object.
 class TemporaryFolder {

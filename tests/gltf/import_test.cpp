@@ -1,0 +1,151 @@
+#include "gltf/import.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "core/error.h"
+#include "gltf/samples.h"
+
+namespace prt::gltf {
+namespace {
+
+using nlohmann::ordered_json;
+
+class GltfImport : public testing::Test {
+ protected:
+  ImportResult import(const ordered_json& json, const ImportOptions& options = {}) {
+    return import_file(folder_.write("a.gltf", json.dump()), options);
+  }
+  samples::TemporaryFolder folder_;
+};
+
+TEST_F(GltfImport, ComputesMissingNormals) {
+  ordered_json json = samples::triangle_json();
+  json["meshes"][0]["primitives"][0]["attributes"] = {{"POSITION", 0}};
+  const mesh::Scene scene = import(json).document.scene();
+  for (const Vec3& n : scene.primitives[0].mesh.normals) EXPECT_EQ(n, Vec3(0, 0, 1));
+}
+
+TEST_F(GltfImport, LeavesAGoodFileAlone) {
+  Document before = Document::from_scene(samples::scene());
+  before.save_glb(folder_ / "a.glb");
+  const ImportResult result = import_file(folder_ / "a.glb", {});
+  EXPECT_EQ(result.document.glb_bytes(), before.glb_bytes());
+}
+
+TEST_F(GltfImport, GivesEachNodeAMeshOfItsOwn) {
+  ordered_json json = samples::triangle_json();
+  json["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 5}}});
+  json["scenes"][0]["nodes"] = {0, 1};
+  const mesh::Scene scene = import(json).document.scene();
+  ASSERT_EQ(scene.primitives.size(), 2u);
+  EXPECT_NE(scene.primitives[0].mesh_index, scene.primitives[1].mesh_index);
+  EXPECT_EQ(scene.primitives[1].mesh.positions[0], Vec3(0, 0, 5));
+}
+
+TEST_F(GltfImport, TurnsStripsFansAndBareListsIntoTriangles) {
+  for (const int mode : {4, 5, 6}) {
+    for (const bool indexed : {true, false}) {
+      ordered_json json = samples::triangle_json();
+      auto& primitive = json["meshes"][0]["primitives"][0];
+      primitive["mode"] = mode;
+      if (!indexed) primitive.erase("indices");
+      const mesh::Scene scene = import(json).document.scene();
+      EXPECT_EQ(scene.triangle_count(), 1u);
+      EXPECT_EQ(scene.primitives[0].mesh.normals[0], Vec3(0, 0, 1));
+    }
+  }
+}
+
+TEST_F(GltfImport, StripsTurnEveryOtherTriangleRound) {
+  mesh::Scene quad = samples::scene();
+  quad.primitives.resize(1);
+  mesh::TriangleMesh& mesh = quad.primitives[0].mesh;
+  mesh = {};
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
+  mesh.normals.assign(5, Vec3(0, 0, 1));
+  mesh.indices = {0, 1, 2, 3, 4, 4};
+  Document document = Document::from_scene(quad);
+  const auto bytes = document.glb_bytes();
+  std::string glb(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t key = glb.find("\"material\":0");
+  ASSERT_NE(key, std::string::npos);
+  glb.replace(key, 12, "\"mode\":5    ");
+  const mesh::Scene scene = import_file(folder_.write("a.glb", glb), {}).document.scene();
+  EXPECT_EQ(scene.primitives[0].mesh.indices,
+            (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2, 2, 3, 4}));
+}
+
+TEST_F(GltfImport, MirroredAndStretchedNodesKeepFrontsAndNormals) {
+  ordered_json json = samples::triangle_json();
+  json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+  json["nodes"][0]["scale"] = {-2, 3, 0.5};
+  json["nodes"][0]["rotation"] = {std::sin(0.3), 0, 0, std::cos(0.3)};
+  const mesh::Scene scene = import(json).document.scene();
+  const mesh::TriangleMesh& mesh = scene.primitives[0].mesh;
+  const auto [a, b, c] = mesh.triangle(0);
+  const Vec3 front = (mesh.positions[b] - mesh.positions[a])
+                         .cross(mesh.positions[c] - mesh.positions[a])
+                         .normalized();
+  for (const Vec3& n : mesh.normals) EXPECT_NEAR(n.dot(front), 1.0f, 1e-6f);
+}
+
+TEST_F(GltfImport, RefinesInWorldSpace) {
+  ordered_json json = samples::triangle_json();
+  json["nodes"][0]["scale"] = {10, 10, 10};
+  ImportOptions options;
+  options.prepare.max_edge = 4.0f;
+  const mesh::Scene scene = import(json, options).document.scene();
+  EXPECT_GT(scene.triangle_count(), 8u);
+  const mesh::TriangleMesh& mesh = scene.primitives[0].mesh;
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const auto [a, b, c] = mesh.triangle(i);
+    EXPECT_LE((mesh.positions[a] - mesh.positions[b]).length(), 4.0f);
+    EXPECT_LE((mesh.positions[b] - mesh.positions[c]).length(), 4.0f);
+    EXPECT_LE((mesh.positions[c] - mesh.positions[a]).length(), 4.0f);
+  }
+}
+
+TEST_F(GltfImport, DropsBrokenTrianglesAndCountsThem) {
+  mesh::Scene scene = samples::scene();
+  scene.primitives[0].mesh.positions.push_back({std::nanf(""), 0, 0});
+  scene.primitives[0].mesh.normals.push_back({0, 0, 1});
+  scene.primitives[0].mesh.texcoords.push_back({0, 0});
+  scene.primitives[0].mesh.colors.push_back({0, 0, 0, 1});
+  auto& indices = scene.primitives[0].mesh.indices;
+  indices.insert(indices.end(), {0, 1, 3, 0, 1, 1, 1, 2, 0});
+  Document::from_scene(scene).save_glb(folder_ / "a.glb");
+  const ImportResult result = import_file(folder_ / "a.glb", {});
+  const mesh::RepairReport& repair = result.meshes[0].repair;
+  EXPECT_EQ(repair.nonfinite_triangle_count, 1u);
+  EXPECT_EQ(repair.nonfinite_vertex_count, 1u);
+  EXPECT_EQ(repair.degenerate_triangle_count, 1u);
+  EXPECT_EQ(repair.duplicate_triangle_count, 1u);
+  EXPECT_EQ(result.document.scene().triangle_count(), 2u);
+}
+
+TEST_F(GltfImport, RejectsWhatHasNoTriangleLeft) {
+  ordered_json json = samples::triangle_json();
+  json["nodes"][0].erase("mesh");
+  EXPECT_THROW(import(json), Error);
+  EXPECT_THROW(import_file(folder_.write("a.obj", "v 0 0 0\nf 1 1 1\n"), {}), Error);
+}
+
+TEST_F(GltfImport, ColoursOnlyWhatHasNoMaterial) {
+  folder_.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+  const auto path = folder_.write("a.obj",
+                                  "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+                                  "usemtl red\nf 3 2 1\n");
+  ImportOptions options;
+  options.base_color = Vec3(0.25f, 0.5f, 0.75f);
+  const mesh::Scene scene = import_file(path, options).document.scene();
+  ASSERT_EQ(scene.primitives.size(), 2u);
+  EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[0], 0), Vec3(0.25f, 0.5f, 0.75f));
+  EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[1], 0), Vec3(1, 0, 0));
+}
+
+}  // namespace
+}  // namespace prt::gltf

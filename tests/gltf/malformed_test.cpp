@@ -1,0 +1,246 @@
+// One test for each way in which a file can be wrong: a clear error of kind bad_input that names
+// the element.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+#include "core/error.h"
+#include "gltf/container.h"
+#include "gltf/document.h"
+#include "gltf/samples.h"
+
+namespace prt::gltf {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+Document parse(const ordered_json& json) { return Document::parse(bytes_of(json.dump()), "a.gltf"); }
+
+// The message of the error that loading, or else looking at the scene, ends in.
+std::string error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string error_of(const ordered_json& json) {
+  return error_of([&] { parse(json).scene(); });
+}
+
+ordered_json with(const char* pointer, const ordered_json& value) {
+  ordered_json json = samples::triangle_json();
+  json[ordered_json::json_pointer(pointer)] = value;
+  return json;
+}
+
+#define EXPECT_ERROR(json, part) \
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, part, error_of(json))
+
+TEST(GltfRead, SampleIsOnlyWrongInItsNormals) {
+  EXPECT_ERROR(samples::triangle_json(), "not of unit length");
+}
+
+TEST(GltfRead, RejectsMissingFile) {
+  EXPECT_ERROR([] { Document::load("no/such.glb"); }, "no such file");
+}
+
+TEST(GltfRead, RejectsWrongMagic) {
+  EXPECT_ERROR([] { Document::parse(bytes_of("v 0 0 0\nv 1 0 0\n"), "a.glb"); },
+               "not a glTF file");
+}
+
+TEST(GltfRead, RejectsEmptyFile) {
+  EXPECT_ERROR([] { Document::parse({}, "a.glb"); }, "not a glTF file");
+}
+
+TEST(GltfRead, RejectsGlbTruncatedAnywhere) {
+  Document document = Document::from_scene(samples::scene());
+  const auto bytes = document.glb_bytes();
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    const std::string error =
+        error_of([&] { Document::parse(std::span(bytes).subspan(0, size), "a.glb"); });
+    EXPECT_NE(error, "no error") << size;
+  }
+}
+
+TEST(GltfRead, RejectsChunkPastTheEnd) {
+  auto bytes = Document::from_scene(samples::scene()).glb_bytes();
+  const std::uint32_t huge = 0xfffffff0u;
+  std::memcpy(&bytes[12], &huge, sizeof(huge));
+  EXPECT_ERROR([&] { Document::parse(bytes, "a.glb"); }, "a chunk runs past the end");
+}
+
+TEST(GltfRead, RejectsDeeplyNestedJson) {
+  const std::string text = std::string(100000, '[');
+  EXPECT_ERROR([&] { Document::parse(bytes_of(text), "a.gltf"); }, "nested too deeply");
+}
+
+TEST(GltfRead, RejectsOtherVersions) {
+  EXPECT_ERROR(with("/asset/version", "1.0"), "not glTF 2.0");
+}
+
+TEST(GltfRead, RejectsAccessorPastBufferEnd) {
+  EXPECT_ERROR(with("/accessors/0/count", 4), "accessor 0: runs past the end of its buffer view");
+  EXPECT_ERROR(with("/accessors/0/count", std::uint64_t{1} << 62), "accessor 0");
+  EXPECT_ERROR(with("/accessors/0/byteOffset", 4), "accessor 0: runs past the end");
+}
+
+TEST(GltfRead, RejectsBufferViewPastBufferEnd) {
+  EXPECT_ERROR(with("/bufferViews/1/byteLength", 7), "bufferView 1: runs past the end");
+  EXPECT_ERROR(with("/bufferViews/1/byteOffset", ~std::uint64_t{0}), "bufferView 1: runs past the end");
+}
+
+TEST(GltfRead, RejectsTruncatedBuffer) {
+  EXPECT_ERROR(with("/buffers/0/byteLength", 43), "buffer 0: the buffer is truncated");
+}
+
+TEST(GltfRead, RejectsImageViewThatDoesNotExistOrRunsPastItsBuffer) {
+  EXPECT_ERROR(with("/images", {{{"bufferView", 2}, {"mimeType", "image/png"}}}), "image 0");
+  ordered_json json = with("/images", {{{"bufferView", 2}, {"mimeType", "image/png"}}});
+  json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 40}, {"byteLength", 100}});
+  EXPECT_ERROR(json, "bufferView 2: runs past the end of its buffer");
+}
+
+TEST(GltfRead, RejectsUnalignedAccessor) {
+  ordered_json json = with("/accessors/0/byteOffset", 2);
+  json["accessors"][0]["count"] = 2;
+  EXPECT_ERROR(json, "accessor 0: not aligned");
+}
+
+TEST(GltfRead, RejectsBadStride) {
+  EXPECT_ERROR(with("/bufferViews/0/byteStride", 6), "bufferView 0: bad stride");
+  EXPECT_ERROR(with("/bufferViews/0/byteStride", 8), "elements larger than the stride");
+}
+
+TEST(GltfRead, RejectsUnknownTypes) {
+  EXPECT_ERROR(with("/accessors/0/componentType", 5124), "accessor 0: unknown component type");
+  EXPECT_ERROR(with("/accessors/0/type", "VEC5"), "accessor 0: unknown type");
+  EXPECT_ERROR(with("/accessors/0/count", "three"), "accessor 0: bad \"count\"");
+  EXPECT_ERROR(with("/accessors/0/count", -3), "accessor 0: bad \"count\"");
+  EXPECT_ERROR(with("/meshes/0/primitives/0/attributes/NORMAL", 1), "NORMAL of a wrong type");
+}
+
+TEST(GltfRead, RejectsSparseBeyondTheAccessor) {
+  EXPECT_ERROR(with("/accessors/2/sparse/count", 4), "accessor 2: more sparse elements");
+  ordered_json json = with("/accessors/2/count", 2);
+  json["accessors"][2]["sparse"]["count"] = 2;
+  json["accessors"][2]["sparse"]["indices"]["byteOffset"] = 2;
+  json["meshes"][0]["primitives"][0]["attributes"] = {{"POSITION", 2}};
+  EXPECT_ERROR(json, "sparse index past the accessor's end");
+}
+
+TEST(GltfRead, RejectsEndlessZeros) {
+  EXPECT_ERROR(with("/accessors/3", {{"componentType", 5126},
+                                     {"count", 4000000000u},
+                                     {"type", "VEC3"}}),
+               "accessor 3: too many elements without data");
+}
+
+TEST(GltfRead, RejectsIndexPastLastVertex) {
+  ordered_json json = samples::triangle_json();
+  json["accessors"][0]["count"] = json["accessors"][2]["count"] = 2;
+  json["accessors"][2].erase("sparse");
+  EXPECT_ERROR(json, "index 2: index past the last vertex");
+}
+
+TEST(GltfRead, RejectsReferencesPastTheirArrays) {
+  EXPECT_ERROR(with("/nodes/0/mesh", 1), "node 0");
+  EXPECT_ERROR(with("/meshes/0/primitives/0/indices", 9), "primitive 0");
+  EXPECT_ERROR(with("/meshes/0/primitives/0/material", 0), "primitive 0");
+  EXPECT_ERROR(with("/scenes/0/nodes/0", 1), "scene 0");
+  EXPECT_ERROR(with("/scene", 1), "default scene");
+}
+
+TEST(GltfRead, RejectsNodeCycle) {
+  ordered_json json = with("/nodes/0/children", {1});
+  json["nodes"].push_back({{"children", {2}}});
+  json["nodes"].push_back({{"children", {0}}});
+  EXPECT_ERROR(json, "cycle");
+  EXPECT_ERROR(with("/nodes/0/children", {0}), "cycle");
+}
+
+TEST(GltfRead, RejectsNodeOfTwoParents) {
+  ordered_json json = with("/nodes/0/children", {2});
+  json["nodes"].push_back({{"children", {2}}});
+  json["nodes"].push_back(ordered_json::object());
+  EXPECT_ERROR(json, "node 2: a node with two parents");
+}
+
+TEST(GltfRead, RejectsTooDeepNodes) {
+  ordered_json json = samples::triangle_json();
+  for (int i = 1; i < 300; ++i) {
+    json["nodes"].back()["children"] = {i};
+    json["nodes"].push_back(ordered_json::object());
+  }
+  EXPECT_ERROR(json, "nested too deeply");
+}
+
+TEST(GltfRead, RejectsUrisThatLeaveTheFolder) {
+  for (const char* uri : {"../secret.bin", "a/../../secret.bin", "/etc/passwd", "%2e%2e/secret.bin",
+                          "%2E%2E%2Fsecret.bin", "..\\secret.bin", "file:///etc/passwd",
+                          "https://example.com/a.bin", "C:\\a.bin", "", "%2fetc/passwd"}) {
+    EXPECT_ERROR(with("/buffers/0/uri", uri), "a relative path inside the file's own folder") << uri;
+  }
+  EXPECT_ERROR(with("/images", {{{"uri", "../a.png"}}}), "a relative path inside");
+}
+
+TEST(GltfRead, RejectsBadDataUris) {
+  EXPECT_ERROR(with("/buffers/0/uri", "data:application/octet-stream;base64,A*A="), "bad base64");
+  EXPECT_ERROR(with("/buffers/0/uri", "data:text/plain,abc"), "not base64");
+  EXPECT_ERROR(with("/buffers/0/uri", "data:application/octet-stream;base64,AAAA"), "truncated");
+}
+
+TEST(GltfRead, RejectsDataLargerThanTheLimit) {
+  const std::string text = samples::triangle_json().dump();
+  EXPECT_ERROR(
+      [&] { Document::parse(bytes_of(text), "a.gltf", {.max_file_bytes = 20}); }, "too large");
+}
+
+TEST(GltfRead, RejectsCompressedGeometry) {
+  EXPECT_ERROR(with("/extensionsRequired", {"KHR_draco_mesh_compression"}),
+               "unsupported extension: found KHR_draco_mesh_compression");
+  ordered_json json = samples::triangle_json();
+  json["buffers"][0].erase("uri");
+  EXPECT_ERROR(json, "compressed data is not supported");
+}
+
+TEST(GltfRead, RejectsPositionsThatAreNotFinite) {
+  ordered_json json = samples::triangle_json();
+  std::string uri = json["buffers"][0]["uri"];
+  uri.replace(uri.find(',') + 1, 6, "AADAfw");  // the first x is NaN
+  json["buffers"][0]["uri"] = uri;
+  EXPECT_ERROR(json, "a position that is not finite");
+}
+
+TEST(GltfRead, RejectsEmptyScene) {
+  EXPECT_ERROR(with("/scenes/0/nodes", ordered_json::array()), "no triangles");
+}
+
+TEST(GltfRead, AdvisesImportForWhatBakingCannotUse) {
+  EXPECT_ERROR(with("/meshes/0/primitives/0/mode", 5), "prt-import");
+  EXPECT_ERROR(with("/meshes/0/primitives/0/attributes", {{"POSITION", 0}}), "prt-import");
+  ordered_json json = samples::triangle_json();
+  json["meshes"][0]["primitives"][0].erase("indices");
+  EXPECT_ERROR(json, "prt-import");
+}
+
+TEST(GltfRead, ReadsFilesBesideItAndEmbedsThem) {
+  const samples::TemporaryFolder folder;
+  const std::string uri = samples::triangle_json()["buffers"][0]["uri"];
+  const Bytes bytes = decode_data_uri(uri, {"a.gltf", "buffer 0"});
+  folder.write("tri angle.bin", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const auto path = folder.write("a.gltf", with("/buffers/0/uri", "tri%20angle.bin").dump());
+  EXPECT_EQ(Document::load(path).glb_bytes(), parse(samples::triangle_json()).glb_bytes());
+}
+
+}  // namespace
+}  // namespace prt::gltf

@@ -1,0 +1,107 @@
+// What prtkit does not know must come through loading, baking and saving.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "gltf/document.h"
+#include "gltf/import.h"
+#include "gltf/samples.h"
+
+namespace prt::gltf {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json rich_json() {
+  ordered_json json = samples::triangle_json();
+  const ordered_json odd = ordered_json::parse(
+      R"({"big": 12345678901, "null": null, "list": [1, 2.5, null, []], "empty": {}, "tiny": 1e-9})");
+  json["extensionsUsed"] = {"FOO_bar", "KHR_lights_punctual", "KHR_materials_unlit"};
+  json["extensions"] = {{"FOO_bar", odd},
+                        {"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
+  json["extras"] = odd;
+  json["asset"]["copyright"] = "somebody";
+  json["asset"]["minVersion"] = "2.0";
+  json["accessors"][0]["name"] = "positions";
+  json["bufferViews"][0]["extensions"]["FOO_bar"] = odd;
+  json["materials"] = {{{"extensions", {{"KHR_materials_unlit", ordered_json::object()}}},
+                        {"emissiveFactor", {0.1, 0.2, 0.3}}}};
+  json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
+  json["nodes"][0]["extras"] = odd;
+  json["nodes"].push_back({{"camera", 0}, {"extensions", {{"FOO_bar", odd}}}});
+  json["scenes"][0]["nodes"].push_back(1);
+  json["skins"] = {{{"joints", {1}}, {"extras", odd}}};
+  json["animations"] = ordered_json::parse(
+      R"([{"channels": [{"sampler": 0, "target": {"node": 1, "path": "scale", "extras": {"a": 1}}}],
+           "samplers": [{"input": 1, "output": 0, "extras": 9}]}])");
+  auto& primitive = json["meshes"][0]["primitives"][0];
+  primitive["extras"] = odd;
+  primitive["targets"] = {{{"POSITION", 0}}};
+  json["meshes"][0]["weights"] = {0.5};
+  return json;
+}
+
+ordered_json json_of(const std::vector<std::byte>& glb) {
+  std::uint32_t size;
+  std::memcpy(&size, &glb[12], sizeof(size));
+  return ordered_json::parse(std::string(reinterpret_cast<const char*>(&glb[20]), size));
+}
+
+// Everything of `before` but buffers, which are merged, must be in `after`, which may hold more.
+void expect_contains(const ordered_json& before, const ordered_json& after,
+                     const std::string& where) {
+  if (before.is_object()) {
+    for (const auto& [key, value] : before.items()) {
+      if (where.empty() && key == "buffers") continue;
+      ASSERT_TRUE(after.contains(key)) << where << "/" << key;
+      expect_contains(value, after[key], where + "/" + key);
+    }
+  } else if (before.is_array()) {
+    ASSERT_GE(after.size(), before.size()) << where;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      expect_contains(before[i], after[i], where + "/" + std::to_string(i));
+    }
+  } else {
+    EXPECT_EQ(before.dump(), after.dump()) << where;
+  }
+}
+
+Document parse(const ordered_json& json) {
+  const std::string text = json.dump();
+  return Document::parse(std::as_bytes(std::span(text)), "a.gltf");
+}
+
+TEST(GltfSurvival, EverythingUnknownSurvivesLoadingAndSaving) {
+  expect_contains(rich_json(), json_of(parse(rich_json()).glb_bytes()), "");
+}
+
+TEST(GltfSurvival, EverythingUnknownSurvivesBakingAndBakingAgain) {
+  Document document = parse(rich_json());
+  document.set_precomputed_transfer(samples::transfer(3));
+  expect_contains(rich_json(), json_of(document.glb_bytes()), "");
+  document.set_precomputed_transfer(samples::transfer(3));
+  expect_contains(rich_json(), json_of(document.glb_bytes()), "");
+}
+
+TEST(GltfSurvival, RemovingTheTransferLeavesNothingOfIt) {
+  Document document = parse(rich_json());
+  document.set_precomputed_transfer(samples::transfer(3));
+  document.remove_precomputed_transfer();
+  EXPECT_EQ(json_of(document.glb_bytes()).dump().find("PRT_"), std::string::npos);
+  EXPECT_FALSE(document.precomputed_transfer());
+}
+
+TEST(GltfSurvival, EverythingUnknownSurvivesImport) {
+  const samples::TemporaryFolder folder;
+  const auto path = folder.write("a.gltf", rich_json().dump());
+  const ImportResult result = import_file(path, {});
+  ordered_json expected = rich_json();
+  expected["meshes"][0]["primitives"][0].erase("attributes");  // the normals had to be replaced
+  expected["meshes"][0]["primitives"][0].erase("indices");
+  expected["meshes"][0]["primitives"][0].erase("targets");
+  expect_contains(expected, json_of(result.document.glb_bytes()), "");
+  EXPECT_EQ(result.document.scene().vertex_count(), 3u);
+}
+
+}  // namespace
+}  // namespace prt::gltf
