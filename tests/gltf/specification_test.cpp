@@ -1,0 +1,59 @@
+// The example and the numbers of docs/extensions/PRTKIT_precomputed_transfer, which were made from
+// the text of the specification by other code than ours.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "gltf/document.h"
+#include "sh/basis.h"
+
+namespace prt::gltf {
+namespace {
+
+const std::filesystem::path kFolder = "../docs/extensions/PRTKIT_precomputed_transfer";
+
+nlohmann::json test_vectors() {
+  return nlohmann::json::parse(read_text_file(kFolder / "test_vectors.json"));
+}
+
+TEST(Specification, BasisFunctionsAreOurs) {
+  const nlohmann::json cases = test_vectors().at("basis");
+  ASSERT_GE(cases.size(), 2u);
+  for (const auto& entry : cases) {
+    const auto d = entry.at("direction").get<std::vector<float>>();
+    const auto expected = entry.at("values").get<std::vector<float>>();
+    ASSERT_EQ(expected.size(), 25u);
+    std::vector<float> values(25);
+    sh::evaluate(5, {d[0], d[1], d[2]}, values);
+    for (std::size_t i = 0; i < 25; ++i) EXPECT_NEAR(values[i], expected[i], 1e-6f) << i;
+  }
+}
+
+TEST(Specification, ExampleGivesTheExitRadianceOfTheTestVectors) {
+  const nlohmann::json vectors = test_vectors();
+  const Document document = Document::load(kFolder / vectors.at("file").get<std::string>());
+  const auto transfer = document.precomputed_transfer();
+  ASSERT_TRUE(transfer);
+  const cpca::Encoding& encoding = transfer->encoding;
+  ASSERT_EQ(encoding.point_count, document.scene().vertex_count());
+  ASSERT_GE(vectors.at("cases").size(), 3u);
+  const std::size_t n = static_cast<std::size_t>(transfer->band_count * transfer->band_count);
+  for (const auto& entry : vectors.at("cases")) {
+    const auto light = entry.at("light").get<std::vector<std::vector<float>>>();
+    const auto expected = entry.at("exitRadiance").get<std::vector<std::vector<float>>>();
+    ASSERT_EQ(expected.size(), encoding.point_count);
+    std::vector<float> row(static_cast<std::size_t>(encoding.dimension));
+    for (std::size_t vertex = 0; vertex < encoding.point_count; ++vertex) {
+      cpca::reconstruct(encoding, vertex, row);
+      for (std::size_t c = 0; c < 3; ++c) {
+        float radiance = 0.0f;
+        for (std::size_t i = 0; i < n; ++i) radiance += row[c * n + i] * light.at(c).at(i);
+        EXPECT_NEAR(radiance, expected[vertex].at(c), 1e-5f) << vertex << " " << c;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace prt::gltf
