@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gltf/document.h"
+#include "inspect/inspection.h"
+#include "inspect/schema.h"
+#include "inspect/statistics.h"
+#include "mesh/scene.h"
+
+namespace prt::inspect {
+
+namespace {
+
+const char* const kExtension = "PRTKIT_precomputed_transfer";
+
+Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Json describe(const mesh::Scene& scene, const mesh::Primitive& primitive) {
+  const mesh::TriangleMesh& mesh = primitive.mesh;
+  Vec3 low(INFINITY), high(-INFINITY);
+  for (const Vec3& p : mesh.positions) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+  Json json = {{"name", primitive.name},
+               {"mesh", primitive.mesh_index},
+               {"primitive", primitive.primitive_index},
+               {"vertex_count", mesh.vertex_count()},
+               {"triangle_count", mesh.triangle_count()},
+               {"bounds_min", to_json(low)},
+               {"bounds_max", to_json(high)},
+               {"texcoords", !mesh.texcoords.empty()},
+               {"colors", !mesh.colors.empty()}};
+  if (primitive.material >= 0) {
+    const auto& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+    json["base_color"] = {material.base_color.x, material.base_color.y, material.base_color.z};
+    json["base_color_texture"] = material.base_color_image >= 0;
+    json["double_sided"] = material.double_sided;
+  }
+  return json;
+}
+
+// Vectors of a cluster are orthonormal; a cluster of fewer points than components pads with zeros.
+double orthonormality_error(const cpca::Encoding& encoding, int cluster) {
+  double worst = 0.0;
+  for (int i = 0; i < encoding.component_count; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const auto a = encoding.basis(cluster, i), b = encoding.basis(cluster, j);
+      double dot = 0.0;
+      for (std::size_t k = 0; k < a.size(); ++k) dot += double{a[k]} * b[k];
+      if (i == j && dot == 0.0) continue;
+      worst = std::max(worst, std::abs(dot - (i == j ? 1.0 : 0.0)));
+    }
+  }
+  return worst;
+}
+
+std::vector<double> cluster_sizes(const cpca::Encoding& encoding) {
+  std::vector<double> sizes(static_cast<std::size_t>(encoding.cluster_count));
+  for (const std::uint32_t cluster : encoding.cluster_of_point) sizes[cluster] += 1.0;
+  return sizes;
+}
+
+Json describe_sizes(std::vector<double> sizes) {
+  double sum = 0.0;
+  for (const double size : sizes) sum += size;
+  return {{"min", percentile(sizes, 0.0)},
+          {"median", percentile(sizes, 0.5)},
+          {"mean", sum / static_cast<double>(sizes.size())},
+          {"max", percentile(sizes, 1.0)}};
+}
+
+// As the extension stores it (16-bit indices every 4 bytes, weights in groups of 4 floats), against
+// the signal as float32.
+Json describe_bytes(const cpca::Encoding& encoding) {
+  const auto component_count = static_cast<std::size_t>(encoding.component_count);
+  const std::size_t indices = encoding.point_count * 4;
+  const std::size_t weights =
+      encoding.point_count * ((component_count + 3) / 4 * 4) * sizeof(float);
+  const std::size_t means = encoding.means.size() * sizeof(float);
+  const std::size_t bases = encoding.bases.size() * sizeof(float);
+  return {{"cluster_indices", indices},
+          {"weights", weights},
+          {"means", means},
+          {"bases", bases},
+          {"total", indices + weights + means + bases},
+          {"uncompressed",
+           encoding.point_count * static_cast<std::size_t>(encoding.dimension) * sizeof(float)}};
+}
+
+void check_encoding(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
+                    Inspection& inspection) {
+  const cpca::Encoding& encoding = transfer.encoding;
+  if (encoding.point_count != scene.vertex_count()) {
+    inspection.error(kExtension, fmt::format("holds {} points, the scene has {} vertices",
+                                             encoding.point_count, scene.vertex_count()));
+  }
+  const std::string hash = mesh::mesh_hash(scene);
+  if (!transfer.mesh_hash.empty() && transfer.mesh_hash != hash) {
+    inspection.error(kExtension,
+                     fmt::format("was baked for another mesh: hash {}, the file's is {}",
+                                 transfer.mesh_hash, hash));
+  }
+  for (const auto& [name, values] : {std::pair{"means", &encoding.means},
+                                     {"bases", &encoding.bases},
+                                     {"weights", &encoding.weights}}) {
+    const std::size_t bad = count_non_finite(*values);
+    if (bad > 0) inspection.error(name, fmt::format("{} values are not finite", bad));
+  }
+}
+
+void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
+                                  const mesh::Scene& scene, Inspection& inspection) {
+  const cpca::Encoding& encoding = transfer.encoding;
+  const std::vector<double> sizes = cluster_sizes(encoding);
+  const auto unused = std::count(sizes.begin(), sizes.end(), 0.0);
+  double orthonormality = 0.0;
+  for (int k = 0; k < encoding.cluster_count; ++k) {
+    const double error = orthonormality_error(encoding, k);
+    if (!(error <= 1e-3)) {
+      inspection.error(fmt::format("cluster {}", k),
+                       fmt::format("basis vectors are not orthonormal: off by {:.3g}", error));
+    }
+    orthonormality = std::max(orthonormality, error);
+  }
+  const Json bytes = describe_bytes(encoding);
+  inspection.json["precomputed_transfer"] = {
+      {"band_count", transfer.band_count},
+      {"row_count", transfer.row_count},
+      {"channel_count", transfer.channel_count},
+      {"dimension", encoding.dimension},
+      {"brdf", transfer.brdf},
+      {"mesh_hash", transfer.mesh_hash},
+      {"point_count", encoding.point_count},
+      {"cluster_count", encoding.cluster_count},
+      {"component_count", encoding.component_count},
+      {"unused_cluster_count", unused},
+      {"cluster_size", describe_sizes(sizes)},
+      {"bytes", bytes},
+      {"compression_ratio", bytes["uncompressed"].get<double>() / bytes["total"].get<double>()},
+      {"mean_values", range_of(encoding.means)},
+      {"weight_values", range_of(encoding.weights)},
+      {"orthonormality_error", orthonormality}};
+  check_encoding(transfer, scene, inspection);
+  if (unused > 0) inspection.warning("clusters", fmt::format("{} have no vertex", unused));
+}
+
+}  // namespace
+
+void inspect_model(const std::filesystem::path& path, Inspection& inspection) {
+  for (const std::string& message : schema_violations(path)) inspection.error(kExtension, message);
+  const gltf::Document document = gltf::Document::load(path);
+  const mesh::Scene scene = document.scene();
+  Json primitives = Json::array();
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    primitives.push_back(describe(scene, primitive));
+  }
+  inspection.json["model"] = {
+      {"vertex_count", scene.vertex_count()},     {"triangle_count", scene.triangle_count()},
+      {"material_count", scene.materials.size()}, {"image_count", scene.images.size()},
+      {"mesh_hash", mesh::mesh_hash(scene)},      {"primitives", primitives}};
+  if (const auto transfer = document.precomputed_transfer()) {
+    inspect_precomputed_transfer(*transfer, scene, inspection);
+  }
+}
+
+}  // namespace prt::inspect

@@ -1,0 +1,23 @@
+// Figures that describe many values.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "inspect/inspection.h"
+
+namespace prt::inspect {
+
+/// {"min", "max", "mean"} of finite values; empty object when there are none.
+Json range_of(std::span<const float> values);
+
+/// {"p50", "p90", "p99", "max"}, nearest rank; empty object when there are none.
+Json percentiles_of(std::vector<double> values);
+
+/// The value below or at which `share` (0 to 1) of the values lie, nearest rank. Not empty.
+double percentile(std::vector<double>& values, double share);
+
+/// How many are not finite.
+std::size_t count_non_finite(std::span<const float> values);
+
+}  // namespace prt::inspect

@@ -1,0 +1,136 @@
+// prt-inspect: what is in a file of prtkit's, is it valid, where is the error.
+#include <fmt/format.h>
+
+#include "cli/tool.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "inspect/compare.h"
+#include "inspect/compression_error.h"
+#include "inspect/histogram.h"
+#include "inspect/inspection.h"
+
+namespace {
+
+using namespace prt;
+namespace fs = std::filesystem;
+
+struct Options {
+  fs::path file, transfer, plots, mask, noise, heatmap;
+  std::vector<fs::path> compare;
+  double heatmap_max = 0.0;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("FILE", options.file,
+                 "Model (.glb, .gltf), transfer (.transfer.exr), light (.json) or image");
+  app.add_flag("--json", options.json, "JSON instead of text");
+  app.add_option("--transfer", options.transfer,
+                 "Transfer that FILE was compressed from: reports the error, vertex by vertex")
+      ->group("Compression error");
+  app.add_option("--plots", options.plots, "Existing folder for error-histogram.png and .csv")
+      ->group("Compression error");
+  app.add_option("--compare", options.compare, "Two images, the second being the reference")
+      ->expected(2)
+      ->group("Comparison");
+  app.add_option("--mask", options.mask, "Image: count only pixels above 0.5")->group("Comparison");
+  app.add_option("--noise", options.noise, "Standard error of the reference")->group("Comparison");
+  app.add_option("--heatmap", options.heatmap, "Write a picture of the difference (.png, .exr)")
+      ->group("Comparison");
+  app.add_option("--heatmap-max", options.heatmap_max,
+                 "Radiance at the red end of its scale; 0: the 99th percentile")
+      ->check(CLI::NonNegativeNumber)
+      ->group("Comparison");
+}
+
+void check_usage(const Options& options) {
+  const auto reject = [](const char* what) { throw Error(ErrorKind::usage, what); };
+  if (options.file.empty() == options.compare.empty()) reject("name either FILE or --compare");
+  if (!options.transfer.empty() && options.file.empty()) reject("--transfer needs FILE");
+  if (!options.plots.empty() && options.transfer.empty()) reject("--plots needs --transfer");
+  const bool of_comparison =
+      !options.mask.empty() || !options.noise.empty() || !options.heatmap.empty();
+  if (of_comparison && options.compare.empty()) {
+    reject("--mask, --noise and --heatmap need --compare");
+  }
+}
+
+void write_plots(const Options& options, const std::vector<double>& errors, bool no_clobber,
+                 Report& report) {
+  const inspect::Histogram histogram = inspect::make_histogram(errors);
+  const fs::path png = options.plots / "error-histogram.png";
+  const fs::path csv = options.plots / "error-histogram.csv";
+  const std::string title = "Compression error of " + options.file.filename().string();
+  image::write_image(png, plot(histogram, title, "error of a vertex / root mean square transfer"),
+                     no_clobber);
+  AtomicFile file(csv, no_clobber);
+  file.write(to_csv(histogram));
+  file.commit();
+  report.add_output(png);
+  report.add_output(csv);
+}
+
+bool inspect_one(const Options& options, bool no_clobber, Report& report, inspect::Json& json) {
+  if (!options.plots.empty()) check_output(options.plots / "error-histogram.png", no_clobber);
+  {
+    const StageTimer timer(report, "inspect");
+    report.add_input(options.file);
+    const inspect::Inspection inspection = inspect::inspect_file(options.file);
+    json = inspection.json;
+    if (!inspection.valid() || options.transfer.empty()) return inspection.valid();
+  }
+  const StageTimer timer(report, "compression error");
+  report.add_input(options.transfer);
+  const auto error = inspect::compression_error(options.file, options.transfer);
+  json["compression_error"] = error.json;
+  if (!options.plots.empty()) write_plots(options, error.relative, no_clobber, report);
+  return true;
+}
+
+void compare_images(const Options& options, bool no_clobber, Report& report, inspect::Json& json) {
+  const StageTimer timer(report, "compare");
+  const auto read = [&](const fs::path& path) {
+    report.add_input(path);
+    return image::read_image(path);
+  };
+  inspect::ComparisonInput input{read(options.compare[0]), read(options.compare[1]), {}, {}};
+  if (!options.mask.empty()) input.mask = read(options.mask);
+  if (!options.noise.empty()) input.noise = read(options.noise);
+  const inspect::Comparison comparison = compare(input);
+  json["image"] = options.compare[0].string();
+  json["reference"] = options.compare[1].string();
+  json["comparison"] = comparison.json;
+  if (options.heatmap.empty()) return;
+  const double scale = options.heatmap_max > 0.0
+                           ? options.heatmap_max
+                           : comparison.json["difference"]["p99"].get<double>();
+  image::write_image(options.heatmap, heatmap(comparison, scale), no_clobber);
+  report.add_output(options.heatmap);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  cli::Tool tool("prt-inspect", "Shows what is in a file, checks it, and measures errors.",
+                 "prt-inspect bunny.prt.glb --transfer bunny.transfer.exr --plots .\n"
+                 "  prt-inspect --compare bunny.exr reference.exr --heatmap difference.png");
+  add_options(tool.app(), options);
+  return tool.run(argc, argv, [&](Report& report) {
+    check_usage(options);
+    const bool no_clobber = tool.common().no_clobber;
+    inspect::Json json = inspect::Json::object();
+    bool valid = true;
+    if (options.compare.empty()) {
+      valid = inspect_one(options, no_clobber, report, json);
+    } else {
+      compare_images(options, no_clobber, report, json);
+    }
+    fmt::print("{}\n", options.json ? json.dump(2) : inspect::to_text(json));
+    report.json()["result"] = json;
+    if (!valid) {
+      throw_bad_input("the file is not valid",
+                      {.file = options.file.string(), .advice = "The findings say what is wrong."});
+    }
+  });
+}
