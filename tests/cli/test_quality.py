@@ -1,0 +1,65 @@
+"""Baked models against the path tracer under the same band-limited light, and the two ways of
+drawing against each other."""
+
+import json
+import unittest
+
+from toolbox import BUNNY, SOURCE, WORLD, ToolTest
+
+SIZE = ("--size", "512x512", "--background", "none", "--antialias", 1)
+
+
+class Quality(ToolTest):
+    def bake(self, source, environment, bounces, *import_options):
+        """Bakes `source` and renders its reference, 5 bands, 256 clusters of 8 components."""
+        self.mesh, self.transfer, self.baked, self.light, self.reference = (
+            self.folder / name for name in
+            ("a.glb", "a.transfer.exr", "a.prt.glb", "a.json", "reference.exr"))
+        self.done("prt-import", source, "-o", self.mesh, *import_options)
+        self.done("prt-transfer", self.mesh, "-o", self.transfer, "--bands", 5, "--rays", 2048,
+                  "--bounces", bounces)
+        self.done("prt-compress", self.mesh, self.transfer, "-o", self.baked, "--clusters", 256,
+                  "--components", 8, "--method", "static")
+        self.done("prt-light", environment, "-o", self.light, "--bands", 5)
+        self.done("prt-render", self.mesh, "--reference", "--bounces", bounces, "--light",
+                  self.light, "--samples", 256, "-o", self.reference, *SIZE[:4])
+
+    def draw(self, name, *options):
+        path = self.folder / name
+        self.done("prt-render", self.baked, "--light", self.light, "-o", path, *SIZE, *options)
+        return path
+
+    def comparison(self, image, reference):
+        result = self.done("prt-inspect", "--compare", image, reference, "--json")
+        figures = json.loads(result.stdout)["comparison"]
+        self.assertGreater(figures["pixel_count"], 20000)
+        return figures
+
+    def test_bunny_against_the_path_tracer(self):
+        self.bake(BUNNY, WORLD / "sunset.exr", 2, "--base-color", "0.7,0.7,0.7")
+        uncompressed = self.draw("u.exr", "--transfer", self.transfer)
+        compressed = self.draw("c.exr")
+        clusters = self.draw("k.exr", "--draw", "clusters")
+        against_reference = {
+            path.name: self.comparison(path, self.reference)["relative_rmse"]
+            for path in (uncompressed, compressed)}
+        print(against_reference)
+        self.assertLess(against_reference["u.exr"], 0.02)
+        self.assertLess(against_reference["c.exr"], 0.03)
+        ways = self.comparison(clusters, compressed)
+        print("two ways of drawing:", ways["difference"]["max"])
+        self.assertLess(ways["difference"]["max"], 1 / 255)
+
+    def test_bounces_in_the_coloured_box(self):
+        for bounces in (0, 1, 2, 10):
+            with self.subTest(bounces=bounces):
+                self.bake(SOURCE / "data/colored_box.obj", WORLD / "courtyard.exr", bounces,
+                          "--max-edge", 0.02, "--crease-angle", 30)
+                uncompressed = self.draw("u.exr", "--transfer", self.transfer)
+                error = self.comparison(uncompressed, self.reference)["relative_rmse"]
+                print(bounces, "bounces:", error)
+                self.assertLess(error, 0.03)
+
+
+if __name__ == "__main__":
+    unittest.main()
