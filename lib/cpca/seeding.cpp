@@ -12,7 +12,7 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kSampleFloats = std::size_t{1} << 22, kSamplesPerMean = 16;
+constexpr std::size_t kSampleFloats = std::size_t{1} << 20, kSamplesPerMean = 16;
 constexpr std::size_t kBlock = 512;
 
 /// One point out of each of equally long stretches of the signal.
