@@ -60,13 +60,24 @@ const Format& format_of(std::span<const std::byte> bytes, const std::string& nam
 }
 
 // libjpeg fills what a truncated file lacks with grey and only warns.
-void check_jpeg_end(const Format& format, std::span<const std::byte> bytes,
-                    const std::string& name) {
-  const std::size_t scan = text_of(bytes).rfind("\xff\xda"sv);
-  const std::size_t end = text_of(bytes).rfind("\xff\xd9"sv);
-  if (scan == std::string_view::npos || end == std::string_view::npos || end < scan) {
-    throw_damaged(format, name, "no end of image");
+bool has_jpeg_end(std::string_view text) {
+  const std::size_t scan = text.rfind("\xff\xda"sv), end = text.rfind("\xff\xd9"sv);
+  return scan != std::string_view::npos && end != std::string_view::npos && end > scan;
+}
+
+// OpenImageIO loses memory when libpng reads past the end, so every chunk is seen to be there
+// first: each has a big-endian length, a type, its data and a checksum.
+bool has_png_end(std::string_view text) {
+  for (std::size_t at = 8; at + 12 <= text.size();) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      length = length << 8 | static_cast<unsigned char>(text[at + i]);
+    }
+    if (length > text.size() - at - 12) return false;
+    if (text.substr(at + 4, 4) == "IEND"sv) return true;
+    at += 12 + length;
   }
+  return false;
 }
 
 void check_size(const OIIO::ImageSpec& spec, const std::string& name, std::size_t max_pixels) {
@@ -125,7 +136,11 @@ Image decode(const Format& format, std::span<const std::byte> bytes, const std::
 Image decode_checked(std::span<const std::byte> bytes, const std::string& name,
                      std::size_t max_pixels, bool only_gltf) {
   const Format& format = format_of(bytes, name, only_gltf);
-  if (format.plugin == "jpeg"sv) check_jpeg_end(format, bytes, name);
+  const std::string_view text = text_of(bytes);
+  if ((format.plugin == "jpeg"sv && !has_jpeg_end(text)) ||
+      (format.plugin == "png"sv && !has_png_end(text))) {
+    throw_damaged(format, name, "no end of image");
+  }
   try {
     return decode(format, bytes, name, max_pixels);
   } catch (const Error&) {

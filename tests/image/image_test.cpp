@@ -181,7 +181,8 @@ TEST_F(ImageFile, RejectsHugeHeaderClaims) {
   write_bytes(folder_ / "a.png",
               start + std::string("\1\0\0\0\1\0\0\0", 8) + type + "\x7e\x04\x26\x83");
   expect_bad_input([&] { read_image(folder_ / "a.png"); });
-  const std::string data = std::string("\0\0\0\x08IDAT", 8) + std::string(12, '\0');
+  const std::string data = std::string("\0\0\0\x08IDAT", 8) + std::string(12, '\0') +
+                           std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12);
   const std::string sides("\x00\x0d\xbb\xa0\x00\x0d\xbb\xa0", 8);
   write_bytes(folder_ / "a.png", start + sides + type + "\x5f\xdf\x06\xd8" + data);
   const std::string message = expect_bad_input([&] { read_image(folder_ / "a.png"); });
