@@ -5,6 +5,7 @@
 
 #include "gltf/document.h"
 #include "inspect/inspection.h"
+#include "inspect/schema.h"
 #include "inspect/statistics.h"
 #include "mesh/scene.h"
 
@@ -151,6 +152,9 @@ void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
 }  // namespace
 
 void inspect_model(const std::filesystem::path& path, Inspection& inspection) {
+  for (const std::string& violation : schema_violations(path)) {
+    inspection.error(kExtension, violation);
+  }
   const gltf::Document document = gltf::Document::load(path);
   const mesh::Scene scene = document.scene();
   Json primitives = Json::array();

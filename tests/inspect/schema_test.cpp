@@ -1,0 +1,80 @@
+#include "inspect/schema.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "sample_files.h"
+
+namespace prt::inspect {
+namespace {
+
+class SchemaTest : public SampleFiles {
+ protected:
+  // Violations of a file with this extension object and that of a primitive.
+  std::vector<std::string> violations(const nlohmann::json& extension,
+                                      const nlohmann::json& primitive) const {
+    const char* name = "PRTKIT_precomputed_transfer";
+    const nlohmann::json json = {
+        {"asset", {{"version", "2.0"}}},
+        {"extensions", {{name, extension}}},
+        {"meshes", {{{"primitives", {{{"extensions", {{name, primitive}}}}}}}}}};
+    const auto path = folder() / "a.gltf";
+    std::ofstream(path) << json;
+    return schema_violations(path);
+  }
+
+  static nlohmann::json good() {
+    return {{"transfers",
+             {{{"conventions", 1},
+               {"bandCount", 5},
+               {"rowCount", 1},
+               {"channelCount", 3},
+               {"clusterCount", 256},
+               {"componentCount", 8},
+               {"means", 3},
+               {"bases", 4}}}}};
+  }
+};
+
+TEST_F(SchemaTest, AcceptsWhatThePipelineWrites) {
+  EXPECT_TRUE(schema_violations(write_model()).empty());
+  EXPECT_TRUE(schema_violations(write_baked(transfer())).empty());
+  EXPECT_TRUE(violations(good(), {{"transfer", 0}}).empty());
+}
+
+TEST_F(SchemaTest, NamesWhatBreaksIt) {
+  nlohmann::json bad = good();
+  bad["transfers"][0]["bandCount"] = 17;
+  const auto found = violations(bad, {{"transfer", -1}});
+  std::string text;
+  for (const std::string& line : found) text += line + "\n";
+  EXPECT_NE(text.find("[transfers][0][bandCount]"), std::string::npos) << text;
+  EXPECT_NE(text.find("mesh 0: primitive 0[transfer]"), std::string::npos) << text;
+}
+
+TEST_F(SchemaTest, RejectsEachBrokenField) {
+  const auto broken = [](const char* key, const nlohmann::json& value) {
+    nlohmann::json json = good();
+    json["transfers"][0][key] = value;
+    return json;
+  };
+  EXPECT_FALSE(violations(broken("conventions", 2), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(broken("channelCount", 2), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(broken("means", "three"), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(broken("componentCount", 0), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations({{"transfers", nlohmann::json::array()}}, {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(nlohmann::json::object(), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(good(), nlohmann::json::object()).empty());
+}
+
+TEST_F(SchemaTest, RejectsFilesWithoutJson) {
+  const auto path = folder() / "a.gltf";
+  std::ofstream(path) << "{";
+  EXPECT_THROW(schema_violations(path), Error);
+  std::ofstream(path) << std::string("glTF\2\0\0\0\xff\xff\xff\xff\xff\xff\xff\xffJSON", 20);
+  EXPECT_THROW(schema_violations(path), Error);
+}
+
+}  // namespace
+}  // namespace prt::inspect
