@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "signal/header_reader.h"
+#include "signal/prescan.h"
 
 namespace prt::signal {
 
@@ -53,6 +54,7 @@ void read_pixels(Imf::InputPart& part, TransferSignal& signal) {
 
 TransferSignal read_image(const std::filesystem::path& path, std::size_t max_bytes) {
   const std::string name = path.string();
+  prescan_header(path);
   Imf::MultiPartInputFile file(name.c_str());
   if (file.parts() != 1) {
     throw_bad_input(

@@ -78,6 +78,28 @@ void expect_contains(const std::string& message, const std::string& part) {
   EXPECT_NE(message.find(part), std::string::npos) << message;
 }
 
+/// An image of 4 × 1 pixels that says it holds a transfer of 4 vertices and 1 band, after `change`.
+void write_stranger(const fs::path& path, const std::function<void(Imf::Header&)>& change) {
+  Imf::Header header(4, 1);
+  header.compression() = Imf::NO_COMPRESSION;
+  header.insert("prtkit_version", Imf::IntAttribute(1));
+  header.insert("prtkit_band_count", Imf::IntAttribute(1));
+  header.insert("prtkit_row_count", Imf::IntAttribute(1));
+  header.insert("prtkit_channel_count", Imf::IntAttribute(1));
+  header.insert("prtkit_ray_count", Imf::IntAttribute(16));
+  header.insert("prtkit_bounce_count", Imf::IntAttribute(0));
+  for (const char* name : {"seed", "brdf", "tool_version", "mesh_hash"}) {
+    header.insert(std::string("prtkit_") + name, Imf::StringAttribute("1"));
+  }
+  header.insert("prtkit_block_names", Imf::StringVectorAttribute({"a"}));
+  header.insert("prtkit_block_vertex_counts", Imf::StringVectorAttribute({"4"}));
+  header.channels().insert("exit000.source000.Y", Imf::Channel(Imf::FLOAT));
+  change(header);
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(Imf::FrameBuffer());  // zeros
+  file.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
+}
+
 TEST_F(TransferFile, RoundTripsBitForBit) {
   for (const auto& counts : {std::vector<std::size_t>{1}, {256}, {257, 3, 1000}, {5000}}) {
     TransferSignal signal = make_signal(3, 2, 3, counts);
@@ -164,6 +186,21 @@ TEST_F(TransferFile, AsksBeforeTakingTooMuchMemory) {
   EXPECT_THROW(read_transfer(path(), 600 * 4 * 4 - 1), Error);
 }
 
+TEST_F(TransferFile, RefusesHeadersThatClaimMoreThanTheFileHolds) {
+  write_stranger(path(), [](Imf::Header&) {});
+  const std::string whole = read_text_file(path());
+  const auto patch = [&](const std::string& attribute, std::size_t offset) {
+    std::string bytes = whole;
+    const std::int32_t huge = 0x40000000;
+    std::memcpy(&bytes[bytes.find(attribute) + attribute.size() + offset], &huge, sizeof(huge));
+    std::ofstream(path("claims.exr"), std::ios::binary) << bytes;
+    expect_contains(reading_error(path("claims.exr")), "claims more than the file holds");
+  };
+  using namespace std::string_literals;
+  patch("prtkit_brdf\0string\0"s, 0);
+  patch("dataWindow\0box2i\0"s, 4 + 12);  // the last scanline
+}
+
 TEST_F(TransferFile, LeavesNothingWhenWritingFails) {
   const TransferSignal signal = make_signal(2, 1, 1, {600});
   EXPECT_THROW(write_transfer(folder_ / "no" / "such" / "folder.exr", signal), Error);
@@ -172,28 +209,6 @@ TEST_F(TransferFile, LeavesNothingWhenWritingFails) {
   EXPECT_THROW(write_transfer(path(), make_signal(2, 1, 1, {10}), true), Error);
   EXPECT_EQ(read_file(path()), before);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
-}
-
-/// An image of 4 × 1 pixels that says it holds a transfer of 4 vertices and 1 band, after `change`.
-void write_stranger(const fs::path& path, const std::function<void(Imf::Header&)>& change) {
-  Imf::Header header(4, 1);
-  header.compression() = Imf::NO_COMPRESSION;
-  header.insert("prtkit_version", Imf::IntAttribute(1));
-  header.insert("prtkit_band_count", Imf::IntAttribute(1));
-  header.insert("prtkit_row_count", Imf::IntAttribute(1));
-  header.insert("prtkit_channel_count", Imf::IntAttribute(1));
-  header.insert("prtkit_ray_count", Imf::IntAttribute(16));
-  header.insert("prtkit_bounce_count", Imf::IntAttribute(0));
-  for (const char* name : {"seed", "brdf", "tool_version", "mesh_hash"}) {
-    header.insert(std::string("prtkit_") + name, Imf::StringAttribute("1"));
-  }
-  header.insert("prtkit_block_names", Imf::StringVectorAttribute({"a"}));
-  header.insert("prtkit_block_vertex_counts", Imf::StringVectorAttribute({"4"}));
-  header.channels().insert("exit000.source000.Y", Imf::Channel(Imf::FLOAT));
-  change(header);
-  Imf::OutputFile file(path.c_str(), header);
-  file.setFrameBuffer(Imf::FrameBuffer());  // zeros
-  file.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
 }
 
 TEST_F(TransferFile, ReadsWhatAnotherProgramWrote) {
