@@ -71,7 +71,7 @@ ColorDrawing::ColorDrawing(std::span<const Vec3> colors, std::size_t index_count
     : index_count_(index_count),
       colors_(colors),
       array_(array_with_positions(positions, indices)),
-      program_("vertex_color.vert", "radiance.frag") {
+      program_("vertex_color.vert", "vertex_color.frag") {
   array_.set_floats(1, colors_, 3, sizeof(Vec3), 0);
 }
 

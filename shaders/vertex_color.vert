@@ -3,9 +3,9 @@
 
 layout(location = 1) in vec3 a_color;
 
-centroid out vec3 v_radiance;
+centroid out vec3 v_color;
 
 void main() {
-  v_radiance = a_color;
+  v_color = a_color;
   place_vertex();
 }

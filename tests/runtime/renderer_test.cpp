@@ -217,6 +217,20 @@ TEST_P(EveryApi, AlphaIsCoverageAndSamplesSmoothIt) {
   }
 }
 
+TEST_P(EveryApi, BackFacesAreBlackAndCovered) {
+  mesh::TriangleMesh inside_out = sphere(24, 32);
+  for (std::size_t i = 0; i < inside_out.indices.size(); i += 3)
+    std::swap(inside_out.indices[i], inside_out.indices[i + 1]);
+  const mesh::Scene scene = scene_of({inside_out});
+  const signal::TransferSignal signal = unshadowed(scene, 3, {{1, 0, 0}});
+  const Model model = make_model(scene, full_rank(signal, 3), signal);
+  for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed}) {
+    const image::Image image = render(model, draw, lighting_from(test_light(3)));
+    const float* const pixel = image.at(kWidth / 2, kHeight / 2);
+    EXPECT_EQ(Vec4(pixel[0], pixel[1], pixel[2], pixel[3]), Vec4(0, 0, 0, 1));
+  }
+}
+
 TEST_P(EveryApi, FalseColorsAreThoseOfTheCpu) {
   const mesh::Scene scene = scene_of({sphere(24, 32)});
   const signal::TransferSignal signal = unshadowed(scene, 3, {{1, 0, 0}});
