@@ -8,6 +8,8 @@ target_compile_options(prt_options INTERFACE -Wall -Wextra -Wshadow -Werror -Wno
 target_include_directories(prt_options INTERFACE ${CMAKE_SOURCE_DIR}/lib ${CMAKE_SOURCE_DIR})
 target_compile_definitions(prt_options INTERFACE PRTKIT_VERSION="${PROJECT_VERSION}")
 if(PRTKIT_SANITIZE)
+  # GCC 12 also misfires with -Wmaybe-uninitialized on sanitized standard headers (bug 105562).
+  target_compile_options(prt_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_compile_options(prt_options INTERFACE -fsanitize=address,undefined
                                                -fno-sanitize-recover=undefined
                                                -fno-omit-frame-pointer)
