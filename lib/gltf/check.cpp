@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/checked.h"
 #include "core/error.h"
 #include "gltf/accessor.h"
 
@@ -14,7 +15,7 @@ namespace prt::gltf {
 namespace {
 
 // An accessor without a view is all zeros: nothing in the file bounds its count.
-constexpr std::size_t kMaxZeroCount = std::size_t{1} << 24;
+constexpr std::size_t kMaxZeroCount = std::size_t{1} << 22;
 
 constexpr const char* kArrays[] = {"accessors", "animations", "buffers",  "bufferViews",
                                    "cameras",   "images",     "materials", "meshes",
@@ -206,6 +207,26 @@ void check_images(const State& state) {
   }
 }
 
+// Nodes may share a mesh and primitives their accessors: a small file can describe a huge scene.
+void check_size(const State& state) {
+  std::size_t total = 0;
+  for (const PrimitiveUse& use : list_primitives(state)) {
+    const Json& primitive = primitive_of(state, use);
+    std::vector<const Json*> accessors;
+    for (const auto& [name, accessor] : primitive.at("attributes").items()) {
+      accessors.push_back(&accessor);
+    }
+    if (const Json* indices = find(primitive, "indices")) accessors.push_back(indices);
+    for (const Json* accessor : accessors) {
+      total = checked_add(total, accessor_count(state, accessor->get<std::size_t>()));
+    }
+    if (total > state.limits.max_element_count) {
+      reject({state.file, "scene"}, "too many vertices and indices", fmt::format("{}", total),
+             fmt::format("at most {}", state.limits.max_element_count));
+    }
+  }
+}
+
 }  // namespace
 
 void check_document(const State& state) {
@@ -216,6 +237,7 @@ void check_document(const State& state) {
   check_meshes(state);
   check_images(state);
   check_nodes(state);
+  check_size(state);
 }
 
 }  // namespace prt::gltf

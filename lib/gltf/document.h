@@ -19,6 +19,7 @@ struct Limits {
   std::size_t max_file_bytes = std::size_t{4} << 30;
   std::size_t max_image_pixels = image::kMaxPixels;
   std::size_t max_node_depth = 256;
+  std::size_t max_element_count = std::size_t{1} << 30;  ///< attribute values and indices, in all
 };
 
 class Document {
