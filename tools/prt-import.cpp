@@ -40,8 +40,8 @@ void report_meshes(prt::Report& report, const std::vector<prt::gltf::ImportedMes
   }
   report.json().update(figures(total));
   report.json()["meshes"] = std::move(list);
-  prt::log::info("{} vertices, {} triangles in {} meshes", total.vertex_count,
-                 total.triangle_count, meshes.size());
+  prt::log::info("{} vertices, {} triangles in {} meshes", total.vertex_count, total.triangle_count,
+                 meshes.size());
   for (const auto& [key, member] : kRepairKeys) {
     if (total.repair.*member > 0) prt::log::info("  {}: {}", key, total.repair.*member);
   }

@@ -24,8 +24,8 @@ T load(const std::byte* from) {
 // glTF 2.0 §3.11: how normalised integers stand for floats.
 template <class T>
 float load_normalized(const std::byte* from) {
-  const float value = static_cast<float>(load<T>(from)) /
-                      static_cast<float>(std::numeric_limits<T>::max());
+  const float value =
+      static_cast<float>(load<T>(from)) / static_cast<float>(std::numeric_limits<T>::max());
   return std::max(value, -1.0f);
 }
 
@@ -215,8 +215,10 @@ std::size_t add_floats(State& state, const char* type, std::span<const float> va
 std::size_t add_indices(State& state, std::span<const std::uint32_t> indices) {
   const std::uint32_t largest =
       indices.empty() ? 0 : *std::max_element(indices.begin(), indices.end());
-  NewAccessor accessor{
-      .component_type = kUnsignedInt, .type = "SCALAR", .count = indices.size(), .target = kIndices};
+  NewAccessor accessor{.component_type = kUnsignedInt,
+                       .type = "SCALAR",
+                       .count = indices.size(),
+                       .target = kIndices};
   if (largest >= std::numeric_limits<std::uint16_t>::max()) {
     return add_accessor(state, accessor, to_bytes(indices));
   }

@@ -14,9 +14,9 @@ namespace prt::gltf {
 constexpr std::size_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
                       kUnsignedInt = 5125, kFloat = 5126;
 
-std::size_t component_bytes(std::size_t component_type);              ///< 0: unknown
-std::size_t components_of(const std::string& accessor_type);          ///< 0: unknown
-std::size_t element_bytes(const Json& accessor);                      ///< of a checked accessor
+std::size_t component_bytes(std::size_t component_type);      ///< 0: unknown
+std::size_t components_of(const std::string& accessor_type);  ///< 0: unknown
+std::size_t element_bytes(const Json& accessor);              ///< of a checked accessor
 
 std::size_t accessor_count(const State& state, std::size_t accessor);
 std::size_t accessor_components(const State& state, std::size_t accessor);

@@ -17,14 +17,13 @@ namespace {
 // An accessor without a view is all zeros: nothing in the file bounds its count.
 constexpr std::size_t kMaxZeroCount = std::size_t{1} << 22;
 
-constexpr const char* kArrays[] = {"accessors", "animations", "buffers",  "bufferViews",
-                                   "cameras",   "images",     "materials", "meshes",
-                                   "nodes",     "samplers",   "scenes",   "skins",
-                                   "textures"};
+constexpr const char* kArrays[] = {"accessors", "animations", "buffers", "bufferViews", "cameras",
+                                   "images",    "materials",  "meshes",  "nodes",       "samplers",
+                                   "scenes",    "skins",      "textures"};
 
-constexpr const char* kSupportedRequired[] = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
-    "EXT_texture_webp",      "KHR_texture_basisu",    "KHR_animation_pointer"};
+constexpr const char* kSupportedRequired[] = {"KHR_mesh_quantization", "KHR_texture_transform",
+                                              "KHR_lights_punctual",   "EXT_texture_webp",
+                                              "KHR_texture_basisu",    "KHR_animation_pointer"};
 
 [[noreturn]] void reject(const Where& where, const std::string& what, const std::string& found = {},
                          const std::string& expected = {}, const std::string& advice = {}) {
@@ -94,8 +93,7 @@ void check_views(const State& state) {
 // `count` elements of `size` bytes must lie within the view, aligned to their components.
 void check_range(const State& state, const Json& source, std::size_t count, std::size_t size,
                  std::size_t component, const Where& where) {
-  const std::size_t index =
-      required_index(source, "bufferView", state.count("bufferViews"), where);
+  const std::size_t index = required_index(source, "bufferView", state.count("bufferViews"), where);
   const Json& view = state.element("bufferViews", index);
   const std::size_t stride = view.value("byteStride", size);
   const std::size_t offset = optional_count(source, "byteOffset", 0, where);
@@ -118,8 +116,8 @@ void check_range(const State& state, const Json& source, std::size_t count, std:
   }
 }
 
-void check_sparse(const State& state, const Json& accessor, std::size_t size,
-                  std::size_t component, const Where& where) {
+void check_sparse(const State& state, const Json& accessor, std::size_t size, std::size_t component,
+                  const Where& where) {
   const Json* sparse = find(accessor, "sparse");
   if (!sparse) return;
   const std::size_t count = required_count(*sparse, "count", where);
@@ -142,8 +140,7 @@ void check_accessors(const State& state) {
     const Json& accessor = accessors[i];
     const Where where = state.where("accessor", i);
     const std::size_t count = required_count(accessor, "count", where);
-    const std::size_t component =
-        component_bytes(required_count(accessor, "componentType", where));
+    const std::size_t component = component_bytes(required_count(accessor, "componentType", where));
     const std::string type = optional_string(accessor, "type", where);
     if (component == 0) reject(where, "unknown component type");
     if (components_of(type) == 0) reject(where, "unknown type", type);

@@ -31,8 +31,7 @@ struct Chunks {
 Chunks split_glb(std::span<const std::byte> bytes, const std::string& file) {
   const auto reject = [&](const std::string& what, const std::string& found = {},
                           const std::string& expected = {}) {
-    throw_bad_input(what,
-                    {.file = file, .element = "GLB", .found = found, .expected = expected});
+    throw_bad_input(what, {.file = file, .element = "GLB", .found = found, .expected = expected});
   };
   if (bytes.size() < kHeaderBytes) reject("truncated header");
   if (load_u32(bytes, 4) != 2) reject("bad version", std::to_string(load_u32(bytes, 4)), "2");
@@ -178,8 +177,7 @@ void load_images(State& state, Fetcher& fetcher) {
 }
 
 bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() &&
-         std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
 void append_u32(Bytes& bytes, std::size_t value) {
@@ -222,8 +220,8 @@ std::string image_mime_type(std::span<const std::byte> bytes) {
 void load_container(State& state, std::span<const std::byte> bytes) {
   Chunks chunks{.json = bytes, .bin = {}};
   if (bytes.size() >= 4 && load_u32(bytes, 0) == kGlbMagic) chunks = split_glb(bytes, state.file);
-  state.root = parse_json(
-      {reinterpret_cast<const char*>(chunks.json.data()), chunks.json.size()}, state.file);
+  state.root = parse_json({reinterpret_cast<const char*>(chunks.json.data()), chunks.json.size()},
+                          state.file);
   if (!state.root.is_object()) throw_bad_input("not a glTF file", {.file = state.file});
   reserve_keys(state.root);
   for (const char* array : {"buffers", "bufferViews", "images"}) {

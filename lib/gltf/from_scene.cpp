@@ -27,8 +27,9 @@ void add_images(State& state, const mesh::Scene& scene) {
 }
 
 Json make_material(State& state, const mesh::Material& material) {
-  Json pbr{{"baseColorFactor", {material.base_color.x, material.base_color.y, material.base_color.z,
-                                material.base_color.w}},
+  Json pbr{{"baseColorFactor",
+            {material.base_color.x, material.base_color.y, material.base_color.z,
+             material.base_color.w}},
            {"metallicFactor", 0},
            {"roughnessFactor", 1}};
   if (material.base_color_image >= 0) {

@@ -68,9 +68,8 @@ std::vector<std::uint32_t> triangulate(std::vector<std::uint32_t> corners, std::
   for (std::size_t i = 2; i < corners.size(); ++i) {
     const std::size_t odd = i % 2;  // strips turn every other triangle round
     const std::array<std::uint32_t, 3> triangle =
-        mode == kTriangleStrip
-            ? std::array{corners[i - 2], corners[i - 1 + odd], corners[i - odd]}
-            : std::array{corners[i - 1], corners[i], corners[0]};
+        mode == kTriangleStrip ? std::array{corners[i - 2], corners[i - 1 + odd], corners[i - odd]}
+                               : std::array{corners[i - 1], corners[i], corners[0]};
     triangles.insert(triangles.end(), triangle.begin(), triangle.end());
   }
   return triangles;

@@ -12,10 +12,9 @@ namespace {
 
 [[noreturn]] void reject(const char* key, const Where& where, const std::string& found,
                          const std::string& expected) {
-  throw_bad_input(fmt::format("bad \"{}\"", key), {.file = where.file,
-                                                   .element = where.element,
-                                                   .found = found,
-                                                   .expected = expected});
+  throw_bad_input(
+      fmt::format("bad \"{}\"", key),
+      {.file = where.file, .element = where.element, .found = found, .expected = expected});
 }
 
 }  // namespace

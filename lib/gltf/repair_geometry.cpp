@@ -29,8 +29,7 @@ void give_every_node_a_mesh(State& state) {
   std::set<std::size_t> used;
   for (std::size_t i = 0; i < state.count("nodes"); ++i) {
     Json& node = state.root["nodes"][i];
-    const auto mesh =
-        optional_index(node, "mesh", state.count("meshes"), state.where("node", i));
+    const auto mesh = optional_index(node, "mesh", state.count("meshes"), state.where("node", i));
     if (!mesh || used.insert(*mesh).second) continue;
     Json copy = state.root["meshes"][*mesh];
     node["mesh"] = state.count("meshes");
@@ -179,17 +178,16 @@ void drop_primitives(State& state, const std::set<std::pair<std::size_t, std::si
   }
 }
 
-void color_bare_primitives(State& state, const std::vector<PrimitiveUse>& uses,
-                           const Vec3& color) {
+void color_bare_primitives(State& state, const std::vector<PrimitiveUse>& uses, const Vec3& color) {
   std::optional<std::size_t> material;
   for (const PrimitiveUse& use : uses) {
     if (primitive_of(state, use).contains("material")) continue;
     if (!material) {
       Json& materials = make_array(state.root, "materials");
       material = materials.size();
-      materials.push_back({{"pbrMetallicRoughness",
-                            {{"baseColorFactor", {color.x, color.y, color.z, 1.0f}},
-                             {"metallicFactor", 0}}}});
+      materials.push_back(
+          {{"pbrMetallicRoughness",
+            {{"baseColorFactor", {color.x, color.y, color.z, 1.0f}}, {"metallicFactor", 0}}}});
     }
     primitive_of(state, use)["material"] = *material;
   }

@@ -70,8 +70,7 @@ class MaterialReader {
       return;
     }
     material.base_color_image = image_number(*source);
-    if (const auto sampler =
-            optional_index(texture, "sampler", state_.count("samplers"), where)) {
+    if (const auto sampler = optional_index(texture, "sampler", state_.count("samplers"), where)) {
       material.wrap_s = read_wrap(state_.element("samplers", *sampler), "wrapS", where);
       material.wrap_t = read_wrap(state_.element("samplers", *sampler), "wrapT", where);
     }
@@ -164,8 +163,8 @@ mesh::Scene Document::scene() const {
     primitive.mesh = read_geometry(*state_, primitive_of(*state_, use), where);
     check_ready(*state_, use, primitive.mesh, where);
     move_to_world(primitive.mesh, use.world_from_local, where);
-    const auto material = optional_index(primitive_of(*state_, use), "material",
-                                         state_->count("materials"), where);
+    const auto material =
+        optional_index(primitive_of(*state_, use), "material", state_->count("materials"), where);
     primitive.material = material ? static_cast<int>(*material) : -1;
     primitive.mesh_index = static_cast<int>(use.mesh);
     primitive.primitive_index = static_cast<int>(use.primitive);

@@ -78,8 +78,8 @@ std::vector<PrimitiveUse> list_primitives(const State& state) {
     stack.pop_back();
     const Json& node = state.element("nodes", visit.node);
     const Matrix4 world_from_local = local_transform(state, visit.node) * visit.world_from_parent;
-    if (const auto mesh = optional_index(node, "mesh", state.count("meshes"),
-                                         state.where("node", visit.node))) {
+    if (const auto mesh =
+            optional_index(node, "mesh", state.count("meshes"), state.where("node", visit.node))) {
       const Json& primitives = state.element("meshes", *mesh).at("primitives");
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         if (primitive_mode(state, primitives[p]) >= kTriangles) {

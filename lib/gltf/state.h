@@ -1,6 +1,6 @@
 // What a Document holds: the JSON as it was read, and the bytes of its buffers. Working on the JSON
-// itself is what lets everything that prtkit does not know survive; tinygltf's model, for one, wraps
-// large integers and drops nulls, empty arrays and some extras and extensions.
+// itself is what lets everything that prtkit does not know survive; tinygltf's model, for one,
+// wraps large integers and drops nulls, empty arrays and some extras and extensions.
 #pragma once
 
 #include <cstddef>

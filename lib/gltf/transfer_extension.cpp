@@ -76,10 +76,10 @@ PrecomputedTransfer read_header(const State& state, const Json& json, const Wher
   cpca::Encoding& encoding = transfer.encoding;
   encoding.cluster_count = read_limited(json, "clusterCount", 1, kMaxClusterCount, where);
   encoding.component_count = read_limited(json, "componentCount", 0, kMaxComponentCount, where);
-  encoding.dimension = transfer.channel_count * transfer.row_count * transfer.band_count *
-                       transfer.band_count;
-  const auto mean_size =
-      static_cast<std::size_t>(encoding.cluster_count) * static_cast<std::size_t>(encoding.dimension);
+  encoding.dimension =
+      transfer.channel_count * transfer.row_count * transfer.band_count * transfer.band_count;
+  const auto mean_size = static_cast<std::size_t>(encoding.cluster_count) *
+                         static_cast<std::size_t>(encoding.dimension);
   encoding.means = read_table(state, json, "means", mean_size, where);
   if (encoding.component_count > 0) {
     const auto basis_size =
@@ -112,8 +112,8 @@ void read_weights(const State& state, const Json& primitive, std::size_t first_v
   encoding.weights.resize(encoding.cluster_of_point.size() * components);
   for (std::size_t group = 0; group < weight_groups(components); ++group) {
     const std::string name = weights_attribute(group);
-    const std::size_t accessor = required_index(primitive.at("attributes"), name.c_str(),
-                                                state.count("accessors"), where);
+    const std::size_t accessor =
+        required_index(primitive.at("attributes"), name.c_str(), state.count("accessors"), where);
     if (accessor_components(state, accessor) != 4) reject(where, name, "another type", "VEC4");
     const std::vector<float> values = read_floats(state, accessor);
     for (std::size_t i = 0; i < count; ++i) {
@@ -206,7 +206,8 @@ std::optional<PrecomputedTransfer> Document::precomputed_transfer() const {
   cpca::Encoding& encoding = transfer.encoding;
   for (const PrimitiveUse& use : list_primitives(*state_)) {
     const Json& primitive = primitive_of(*state_, use);
-    const Where element{state_->file, fmt::format("mesh {}: primitive {}", use.mesh, use.primitive)};
+    const Where element{state_->file,
+                        fmt::format("mesh {}: primitive {}", use.mesh, use.primitive)};
     const Json* reference = extension_of(primitive);
     if (!reference) reject(element, "no transfer", "nothing", kExtension);
     required_index(*reference, "transfer", transfers.size(), element);
@@ -237,8 +238,7 @@ void Document::set_precomputed_transfer(const PrecomputedTransfer& transfer) {
   for (const PrimitiveUse& use : uses) {
     const std::size_t count = vertex_count(use);
     Json& primitive = primitive_of(*state_, use);
-    write_clusters(*state_, primitive,
-                   std::span(encoding.cluster_of_point).subspan(first, count));
+    write_clusters(*state_, primitive, std::span(encoding.cluster_of_point).subspan(first, count));
     write_weights(*state_, primitive,
                   std::span(encoding.weights).subspan(first * components, count * components),
                   components, count);

@@ -152,7 +152,8 @@ void compute_tangents(TriangleMesh& mesh) {
   std::vector<double> sides(mesh.vertex_count(), 0.0);
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const auto [a, b, c] = mesh.triangle(i);
-    const Dvec3 e1(mesh.positions[b] - mesh.positions[a]), e2(mesh.positions[c] - mesh.positions[a]);
+    const Dvec3 e1(mesh.positions[b] - mesh.positions[a]),
+        e2(mesh.positions[c] - mesh.positions[a]);
     const Imath::V2d t1(mesh.texcoords[b] - mesh.texcoords[a]),
         t2(mesh.texcoords[c] - mesh.texcoords[a]);
     const double determinant = t1.x * t2.y - t1.y * t2.x;

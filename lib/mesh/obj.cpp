@@ -32,8 +32,8 @@ struct CornerHash {
 struct Group {
   int material = -1;
   std::string name;
-  std::vector<Corner> corners;        // three a triangle
-  std::vector<std::size_t> lines;     // one a triangle, for messages
+  std::vector<Corner> corners;     // three a triangle
+  std::vector<std::size_t> lines;  // one a triangle, for messages
 };
 
 class ObjReader {
@@ -217,8 +217,7 @@ class ObjReader {
 
 }  // namespace
 
-Scene read_obj(std::string_view text, const std::filesystem::path& path,
-               const ReadLimits& limits) {
+Scene read_obj(std::string_view text, const std::filesystem::path& path, const ReadLimits& limits) {
   if (text.find('\0') != text.npos) {
     throw_bad_input("not an OBJ file: it is binary", {.file = path.string()});
   }

@@ -67,10 +67,8 @@ class PlyReader {
  private:
   [[noreturn]] void reject(const std::string& what, const std::string& element = {},
                            const std::string& found = {}, const std::string& expected = {}) const {
-    throw_bad_input(what, {.file = path_.string(),
-                           .element = element,
-                           .found = found,
-                           .expected = expected});
+    throw_bad_input(
+        what, {.file = path_.string(), .element = element, .found = found, .expected = expected});
   }
 
   std::string_view header_line() {
@@ -119,10 +117,12 @@ class PlyReader {
 
   Type read_type(std::string_view word) const {
     constexpr std::pair<const char*, Type> kTypes[] = {
-        {"char", Type::i8},    {"int8", Type::i8},    {"uchar", Type::u8},  {"uint8", Type::u8},
-        {"short", Type::i16},  {"int16", Type::i16},  {"ushort", Type::u16}, {"uint16", Type::u16},
-        {"int", Type::i32},    {"int32", Type::i32},  {"uint", Type::u32},  {"uint32", Type::u32},
-        {"float", Type::f32},  {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
+        {"char", Type::i8},    {"int8", Type::i8},     {"uchar", Type::u8},
+        {"uint8", Type::u8},   {"short", Type::i16},   {"int16", Type::i16},
+        {"ushort", Type::u16}, {"uint16", Type::u16},  {"int", Type::i32},
+        {"int32", Type::i32},  {"uint", Type::u32},    {"uint32", Type::u32},
+        {"float", Type::f32},  {"float32", Type::f32}, {"double", Type::f64},
+        {"float64", Type::f64}};
     for (const auto& [name, type] : kTypes) {
       if (word == name) return type;
     }
@@ -152,10 +152,10 @@ class PlyReader {
     }
     // The last separator of an ASCII file may be missing.
     if (least == 0 || element.count > (rest_.size() + 1) / least) {
-      reject("the file is too small for its header", "element " + excerpt(element.name),
-             std::to_string(element.count) + " elements in " + std::to_string(rest_.size()) +
-                 " bytes",
-             "at least " + std::to_string(least) + " bytes for each");
+      reject(
+          "the file is too small for its header", "element " + excerpt(element.name),
+          std::to_string(element.count) + " elements in " + std::to_string(rest_.size()) + " bytes",
+          "at least " + std::to_string(least) + " bytes for each");
     }
     if (element.count >= std::numeric_limits<std::uint32_t>::max()) {
       reject("too many elements", "element " + excerpt(element.name), std::to_string(element.count),
@@ -305,8 +305,7 @@ class PlyReader {
     for (std::size_t i = 0; i < mesh_.indices.size(); ++i) {
       if (mesh_.indices[i] < mesh_.vertex_count()) continue;
       reject("vertex index past the end", "triangle " + std::to_string(i / 3),
-             std::to_string(mesh_.indices[i]),
-             "less than " + std::to_string(mesh_.vertex_count()));
+             std::to_string(mesh_.indices[i]), "less than " + std::to_string(mesh_.vertex_count()));
     }
   }
 

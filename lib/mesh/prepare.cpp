@@ -1,6 +1,5 @@
 #include "mesh/prepare.h"
 
-
 #include "core/error.h"
 #include "core/log.h"
 #include "mesh/normals.h"

@@ -2,7 +2,6 @@
 // scene at once.
 #pragma once
 
-
 #include "mesh/repair.h"
 #include "mesh/scene.h"
 
@@ -12,7 +11,7 @@ enum class UpAxis { y, z };
 
 struct PrepareOptions {
   RepairOptions repair;
-  float max_edge = 0.0f;          ///< longest edge in metres after refinement; 0: as it is
+  float max_edge = 0.0f;                   ///< longest edge in metres after refinement; 0: as it is
   std::size_t max_triangles = 50'000'000;  ///< of one mesh after refinement
 };
 

@@ -28,8 +28,7 @@ void move_to_first(TriangleMesh& mesh, const std::vector<std::uint32_t>& first) 
 bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& corners) {
   const Dvec3 a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]),
       c(mesh.positions[corners[2]]);
-  const double longest =
-      std::max({(b - a).length2(), (c - b).length2(), (a - c).length2()});
+  const double longest = std::max({(b - a).length2(), (c - b).length2(), (a - c).length2()});
   return (b - a).cross(c - a).length() > 1e-12 * longest;
 }
 
@@ -66,9 +65,8 @@ void drop_bad_triangles(TriangleMesh& mesh, RepairReport& report) {
       filter_triangles(mesh, [&](const auto& corners) { return has_area(mesh, corners); });
   const std::vector<std::uint32_t> first = first_at_same_position(mesh);
   std::set<std::array<std::uint32_t, 3>> seen;
-  report.duplicate_triangle_count += filter_triangles(mesh, [&](const auto& corners) {
-    return seen.insert(canonical(corners, first)).second;
-  });
+  report.duplicate_triangle_count += filter_triangles(
+      mesh, [&](const auto& corners) { return seen.insert(canonical(corners, first)).second; });
 }
 
 // Drops what no triangle uses; returns where the kept vertices stood.

@@ -22,15 +22,15 @@ struct RepairOptions {
 /// What was found and done; counts add up over the meshes of a file.
 struct RepairReport {
   std::size_t welded_vertex_count = 0;
-  std::size_t nonfinite_vertex_count = 0;       ///< dropped, with their triangles
-  std::size_t unreferenced_vertex_count = 0;    ///< dropped
-  std::size_t degenerate_triangle_count = 0;    ///< dropped: no area
-  std::size_t duplicate_triangle_count = 0;     ///< dropped: the same three vertices, same side
-  std::size_t nonfinite_triangle_count = 0;     ///< dropped with a vertex
-  std::size_t computed_normal_count = 0;        ///< vertices whose normal was computed
-  std::size_t nonmanifold_triangle_count = 0;   ///< kept: more than two faces at an edge
-  std::size_t nonmanifold_vertex_count = 0;     ///< kept: bow ties
-  std::size_t boundary_edge_count = 0;          ///< edges of one face
+  std::size_t nonfinite_vertex_count = 0;      ///< dropped, with their triangles
+  std::size_t unreferenced_vertex_count = 0;   ///< dropped
+  std::size_t degenerate_triangle_count = 0;   ///< dropped: no area
+  std::size_t duplicate_triangle_count = 0;    ///< dropped: the same three vertices, same side
+  std::size_t nonfinite_triangle_count = 0;    ///< dropped with a vertex
+  std::size_t computed_normal_count = 0;       ///< vertices whose normal was computed
+  std::size_t nonmanifold_triangle_count = 0;  ///< kept: more than two faces at an edge
+  std::size_t nonmanifold_vertex_count = 0;    ///< kept: bow ties
+  std::size_t boundary_edge_count = 0;         ///< edges of one face
 
   void add(const RepairReport& other);
   bool dropped_anything() const;

@@ -74,13 +74,13 @@ TriangleMesh read_stl(std::string_view bytes, const std::filesystem::path& path)
     return read_binary(bytes);
   }
   if (bytes.starts_with("solid")) return read_text(bytes, path);
-  throw_bad_input("not an STL file, or truncated",
-                  {.file = path.string(),
-                   .found = std::to_string(bytes.size()) + " bytes",
-                   .expected = bytes.size() < kHeaderBytes
-                                   ? "at least 84 bytes"
-                                   : std::to_string(announced_bytes(bytes)) +
-                                         " bytes, as its header says, or text"});
+  throw_bad_input(
+      "not an STL file, or truncated",
+      {.file = path.string(),
+       .found = std::to_string(bytes.size()) + " bytes",
+       .expected = bytes.size() < kHeaderBytes ? "at least 84 bytes"
+                                               : std::to_string(announced_bytes(bytes)) +
+                                                     " bytes, as its header says, or text"});
 }
 
 }  // namespace prt::mesh

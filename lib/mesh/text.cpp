@@ -54,7 +54,8 @@ std::optional<float> to_float(std::string_view word) {
   if (error != std::errc()) return std::nullopt;
   // Converting a double beyond the range of float is undefined; make it the infinity it means.
   if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max()) {
-    return std::copysign(std::numeric_limits<float>::infinity(), static_cast<float>(value > 0 ? 1 : -1));
+    return std::copysign(std::numeric_limits<float>::infinity(),
+                         static_cast<float>(value > 0 ? 1 : -1));
   }
   return static_cast<float>(value);
 }

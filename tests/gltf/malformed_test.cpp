@@ -19,7 +19,9 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-Document parse(const ordered_json& json) { return Document::parse(bytes_of(json.dump()), "a.gltf"); }
+Document parse(const ordered_json& json) {
+  return Document::parse(bytes_of(json.dump()), "a.gltf");
+}
 
 // The message of the error that loading, or else looking at the scene, ends in.
 std::string error_of(const std::function<void()>& work) {
@@ -42,8 +44,7 @@ ordered_json with(const char* pointer, const ordered_json& value) {
   return json;
 }
 
-#define EXPECT_ERROR(json, part) \
-  EXPECT_PRED_FORMAT2(testing::IsSubstring, part, error_of(json))
+#define EXPECT_ERROR(json, part) EXPECT_PRED_FORMAT2(testing::IsSubstring, part, error_of(json))
 
 TEST(GltfRead, SampleIsOnlyWrongInItsNormals) {
   EXPECT_ERROR(samples::triangle_json(), "not of unit length");
@@ -54,8 +55,7 @@ TEST(GltfRead, RejectsMissingFile) {
 }
 
 TEST(GltfRead, RejectsWrongMagic) {
-  EXPECT_ERROR([] { Document::parse(bytes_of("v 0 0 0\nv 1 0 0\n"), "a.glb"); },
-               "not a glTF file");
+  EXPECT_ERROR([] { Document::parse(bytes_of("v 0 0 0\nv 1 0 0\n"), "a.glb"); }, "not a glTF file");
 }
 
 TEST(GltfRead, RejectsEmptyFile) {
@@ -96,7 +96,8 @@ TEST(GltfRead, RejectsAccessorPastBufferEnd) {
 
 TEST(GltfRead, RejectsBufferViewPastBufferEnd) {
   EXPECT_ERROR(with("/bufferViews/1/byteLength", 7), "bufferView 1: runs past the end");
-  EXPECT_ERROR(with("/bufferViews/1/byteOffset", ~std::uint64_t{0}), "bufferView 1: runs past the end");
+  EXPECT_ERROR(with("/bufferViews/1/byteOffset", ~std::uint64_t{0}),
+               "bufferView 1: runs past the end");
 }
 
 TEST(GltfRead, RejectsTruncatedBuffer) {
@@ -139,10 +140,9 @@ TEST(GltfRead, RejectsSparseBeyondTheAccessor) {
 }
 
 TEST(GltfRead, RejectsEndlessZeros) {
-  EXPECT_ERROR(with("/accessors/3", {{"componentType", 5126},
-                                     {"count", 4000000000u},
-                                     {"type", "VEC3"}}),
-               "accessor 3: too many elements without data");
+  EXPECT_ERROR(
+      with("/accessors/3", {{"componentType", 5126}, {"count", 4000000000u}, {"type", "VEC3"}}),
+      "accessor 3: too many elements without data");
 }
 
 TEST(GltfRead, RejectsIndexPastLastVertex) {
@@ -188,7 +188,8 @@ TEST(GltfRead, RejectsUrisThatLeaveTheFolder) {
   for (const char* uri : {"../secret.bin", "a/../../secret.bin", "/etc/passwd", "%2e%2e/secret.bin",
                           "%2E%2E%2Fsecret.bin", "..\\secret.bin", "file:///etc/passwd",
                           "https://example.com/a.bin", "C:\\a.bin", "", "%2fetc/passwd"}) {
-    EXPECT_ERROR(with("/buffers/0/uri", uri), "a relative path inside the file's own folder") << uri;
+    EXPECT_ERROR(with("/buffers/0/uri", uri), "a relative path inside the file's own folder")
+        << uri;
   }
   EXPECT_ERROR(with("/images", {{{"uri", "../a.png"}}}), "a relative path inside");
 }
@@ -201,8 +202,8 @@ TEST(GltfRead, RejectsBadDataUris) {
 
 TEST(GltfRead, RejectsDataLargerThanTheLimit) {
   const std::string text = samples::triangle_json().dump();
-  EXPECT_ERROR(
-      [&] { Document::parse(bytes_of(text), "a.gltf", {.max_file_bytes = 20}); }, "too large");
+  EXPECT_ERROR([&] { Document::parse(bytes_of(text), "a.gltf", {.max_file_bytes = 20}); },
+               "too large");
 }
 
 TEST(GltfRead, RejectsCompressedGeometry) {

@@ -75,8 +75,8 @@ nlohmann::ordered_json triangle_json() {
     "nodes": [{"mesh": 0}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 2}, "indices": 1}]}],
     "buffers": [{"byteLength": 42, "uri": "data:application/octet-stream;base64,)"
-    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"
-    R"("}],
+                                       "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"
+                                       R"("}],
     "bufferViews": [{"buffer": 0, "byteLength": 36},
                     {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
     "accessors": [

@@ -17,8 +17,8 @@ mesh::Scene scene();
 PrecomputedTransfer transfer(std::size_t vertex_count, int cluster_count = 3,
                              int component_count = 5);
 
-/// A triangle with indices as plain .gltf, its buffer a data URI of 36 + 6 bytes in two views; to be
-/// broken in one place.
+/// A triangle with indices as plain .gltf, its buffer a data URI of 36 + 6 bytes in two views; to
+/// be broken in one place.
 nlohmann::ordered_json triangle_json();
 
 /// A folder of this test's own, removed with the object.

@@ -21,8 +21,12 @@ TriangleMesh cube() {
     mesh.positions.emplace_back(static_cast<float>(i & 1), static_cast<float>((i >> 1) & 1),
                                 static_cast<float>(i >> 2));
   }
-  for (const auto& q : {std::array{0u, 2u, 3u, 1u}, {4u, 5u, 7u, 6u}, {0u, 1u, 5u, 4u},
-                        {2u, 6u, 7u, 3u}, {0u, 4u, 6u, 2u}, {1u, 3u, 7u, 5u}}) {
+  for (const auto& q : {std::array{0u, 2u, 3u, 1u},
+                        {4u, 5u, 7u, 6u},
+                        {0u, 1u, 5u, 4u},
+                        {2u, 6u, 7u, 3u},
+                        {0u, 4u, 6u, 2u},
+                        {1u, 3u, 7u, 5u}}) {
     mesh.indices.insert(mesh.indices.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
   }
   return mesh;
@@ -85,7 +89,7 @@ TEST(Repair, CountsWhatItDrops) {
   TriangleMesh mesh = cube();
   mesh.positions.emplace_back(std::nanf(""), 0.0f, 0.0f);
   mesh.positions.emplace_back(9.0f, 9.0f, 9.0f);
-  mesh.indices.insert(mesh.indices.end(), {0, 1, 8, 0, 0, 1, 3, 1, 0, 2, 3, 0, 0, 2, 3});
+  mesh.indices.insert(mesh.indices.end(), {0, 1, 8, 0, 0, 1, 3, 1, 0, 2, 3, 0, 0, 3, 2});
   RepairReport report;
   repair(mesh, {}, report);
   EXPECT_EQ(report.nonfinite_vertex_count, 1u);
