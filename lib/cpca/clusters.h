@@ -14,7 +14,7 @@ struct PointsByCluster {
   std::vector<std::uint32_t> points;  ///< those of cluster k are [offsets[k], offsets[k + 1])
 
   std::span<const std::uint32_t> of(std::size_t cluster) const {
-    return {&points[offsets[cluster]], offsets[cluster + 1] - offsets[cluster]};
+    return std::span(points).subspan(offsets[cluster], offsets[cluster + 1] - offsets[cluster]);
   }
 };
 
