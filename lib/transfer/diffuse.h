@@ -1,1 +1,70 @@
+// Diffuse transfer vectors [Sloan, Kautz, Snyder 2002]: how each vertex of a scene, a Lambertian
+// surface, turns distant light (spherical harmonic coefficients) into exit radiance.
+//
+//   t_v = albedo_v / pi · E_v,   E_v = E⁰_v + E¹_v + … + Eᴮ_v   (irradiance by bounce number)
+//   E⁰_v       = ∫ V(v, d) max(0, n_v·d) Y(d) dd
+//   E^(b+1)_v  = ∫ (1 - V(v, d)) max(0, n_v·d) albedo(h) / pi · E^b(h) dd,  h what d hits first
+//
+// The integrals are sums over one set of directions for all vertices (transfer/directions.h). What
+// nothing blocks is known in closed form (transfer/clamped_cosine.h), so E⁰ is that minus the sum
+// over blocked directions: exact on a convex body, and blocked and reflected energy balance
+// exactly.
+//
+// Conventions. A direction below the horizon of the shading normal counts nothing. Front and back
+// faces block. E at a hit is interpolated over its triangle, the albedo is the hit point's own. The
+// back of a face is black, for the irradiance there is unknown, `double_sided` or not: the inside
+// of a closed body is not seen, and an open sheet that should reflect on both sides needs both
+// modelled. Of a vertex whose hemisphere is buried in other geometry (transfer/buried.h) the values
+// come from the nearest vertices along edges that are not.
 #pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/scene.h"
+#include "signal/transfer_signal.h"
+
+namespace prt::transfer {
+
+/// `automatic`: three channels where any albedo is coloured, else one. `one` of a coloured albedo
+/// takes its luminance.
+enum class ChannelMode { automatic, one, three };
+
+struct DiffuseOptions {
+  int band_count = 5;    ///< of the light, 1 to sh::kMaxBandCount
+  int ray_count = 2048;  ///< per vertex, over its hemisphere (on average)
+  int bounce_count = 0;  ///< of interreflection; needs shadowed
+  bool shadowed = true;  ///< false: no rays, the closed form
+  ChannelMode channels = ChannelMode::automatic;
+  std::uint64_t seed = 1;  ///< turns the set of directions
+  /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
+  bool closed_form = true;
+};
+
+struct DiffuseStats {
+  struct Primitive {
+    std::string name;
+    std::size_t vertex_count = 0;
+    std::size_t triangle_count = 0;
+    std::size_t buried_vertex_count = 0;
+  };
+  std::vector<Primitive> primitives;
+  std::uint64_t rays_cast = 0;              ///< occlusion and closest hit
+  double trace_seconds = 0.0;               ///< of the passes that cast them
+  std::size_t buried_vertex_count = 0;      ///< detected
+  std::size_t unrepaired_vertex_count = 0;  ///< of these, with no unburied vertex connected
+  double build_seconds = 0.0, bounce_seconds = 0.0;
+
+  double rays_per_second() const {
+    return trace_seconds > 0.0 ? static_cast<double>(rays_cast) / trace_seconds : 0.0;
+  }
+};
+
+/// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.
+/// Beyond input, output and the ray engine's tree, memory stays under 500 MB. Throws Error (usage)
+/// on options out of range and Error (bad_input) on positions or normals that are not finite.
+signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
+                                       DiffuseStats& stats);
+
+}  // namespace prt::transfer

@@ -1,0 +1,43 @@
+// What a vertex sees: traces the shared directions above its horizon.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ray/engine.h"
+#include "transfer/directions.h"
+#include "transfer/kernels.h"
+#include "transfer/scene_index.h"
+
+namespace prt::transfer {
+
+/// Buffers of one thread, used for vertex after vertex.
+class Hemisphere {
+ public:
+  Hemisphere(const SceneIndex& index, const Directions& directions);
+
+  /// Casts a shadow ray in each direction above the vertex's horizon and sorts them into blocked()
+  /// and visible(): direction number and cosine, in the order of the directions.
+  void trace(std::size_t vertex);
+  std::span<const WeightedRow> blocked() const { return blocked_; }
+  std::span<const WeightedRow> visible() const { return visible_; }
+
+  /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked().
+  std::span<const ray::Hit> hits();
+
+  /// Rays cast so far, of both kinds.
+  std::uint64_t rays_cast() const { return rays_cast_; }
+
+ private:
+  const SceneIndex& index_;
+  const Directions& directions_;
+  Vec3 origin_;
+  std::vector<ray::Ray> rays_;
+  std::vector<WeightedRow> above_, blocked_, visible_;
+  std::vector<std::uint8_t> occluded_;
+  std::vector<ray::Hit> hits_;
+  std::uint64_t rays_cast_ = 0;
+};
+
+}  // namespace prt::transfer

@@ -1,0 +1,54 @@
+// A scene's vertices and triangles numbered through, and its ray engine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "mesh/scene.h"
+#include "ray/engine.h"
+
+namespace prt::transfer {
+
+class SceneIndex {
+ public:
+  /// Builds the ray engine. Throws Error (bad_input) on numbers that are not finite, Error (failed)
+  /// on more than 2^32 - 2 vertices or triangles. The scene must outlive this.
+  explicit SceneIndex(const mesh::Scene& scene);
+
+  struct Place {
+    std::size_t primitive;
+    std::size_t local;  ///< number of the vertex or triangle in that primitive
+  };
+  Place vertex_place(std::size_t vertex) const { return place(vertex_offsets_, vertex); }
+  Place triangle_place(std::size_t triangle) const { return place(triangle_offsets_, triangle); }
+
+  const mesh::Scene& scene() const { return scene_; }
+  const ray::Engine& engine() const { return *engine_; }
+  std::size_t vertex_count() const { return vertex_offsets_.back(); }
+  std::size_t triangle_count() const { return triangle_offsets_.back(); }
+  const Vec3& normal(std::size_t vertex) const;
+  /// Where the vertex's rays start, relative to the scene's centre as all that is traced: small
+  /// scenes far from the origin keep their precision.
+  Vec3 ray_origin(std::size_t vertex) const;
+  /// Largest coordinate around the vertex, relative to the centre; the unit of rounding errors.
+  float magnitude(std::size_t vertex) const { return magnitudes_[vertex]; }
+  /// Vertices of a triangle, numbered through.
+  std::array<std::uint32_t, 3> triangle(std::size_t triangle) const;
+  /// Vertices in an order that keeps neighbours together.
+  const std::vector<std::uint32_t>& vertex_order() const { return vertex_order_; }
+
+ private:
+  static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
+  Vec3 centred_position(std::size_t vertex) const;
+
+  const mesh::Scene& scene_;
+  std::vector<std::size_t> vertex_offsets_, triangle_offsets_;
+  Vec3 centre_{0.0f};
+  std::vector<float> magnitudes_;
+  std::vector<std::uint32_t> vertex_order_;
+  std::unique_ptr<ray::Engine> engine_;
+};
+
+}  // namespace prt::transfer
