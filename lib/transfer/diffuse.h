@@ -18,6 +18,7 @@
 // come from the nearest vertices along edges that are not.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct DiffuseOptions {
   std::uint64_t seed = 1;  ///< turns the set of directions
   /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
   bool closed_form = true;
+  std::size_t hit_bytes = std::size_t{256} << 20;     ///< for hits kept from bounce to bounce
+  std::size_t bounce_bytes = std::size_t{128} << 20;  ///< for the two fields of a bounce
 };
 
 struct DiffuseStats {
@@ -50,15 +53,13 @@ struct DiffuseStats {
     std::size_t buried_vertex_count = 0;
   };
   std::vector<Primitive> primitives;
-  std::uint64_t rays_cast = 0;              ///< occlusion and closest hit
-  double trace_seconds = 0.0;               ///< of the passes that cast them
   std::size_t buried_vertex_count = 0;      ///< detected
-  std::size_t unrepaired_vertex_count = 0;  ///< of these, with no unburied vertex connected
-  double build_seconds = 0.0, bounce_seconds = 0.0;
-
-  double rays_per_second() const {
-    return trace_seconds > 0.0 ? static_cast<double>(rays_cast) / trace_seconds : 0.0;
-  }
+  std::size_t unrepaired_vertex_count = 0;  ///< of these, connected to no vertex that is not
+  std::uint64_t rays_cast = 0;              ///< occlusion and closest hit
+  double rays_per_second = 0.0;             ///< of the first pass, which casts all or most
+  double build_seconds = 0.0;               ///< the ray engine's tree, the order of vertices
+  double trace_seconds = 0.0;               ///< the first pass: shadows, hits of the blocked rays
+  double bounce_seconds = 0.0;              ///< gathering, with what rays it casts again
 };
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.

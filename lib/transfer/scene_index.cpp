@@ -43,7 +43,7 @@ SceneIndex::SceneIndex(const mesh::Scene& scene)
   if (vertex_count() > 0) centre_ = box.min * 0.5f + box.max * 0.5f;
 
   std::vector<Vec3> positions(vertex_count());
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = centred_position(i);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = position(i);
   std::vector<std::uint32_t> indices;
   indices.reserve(3 * triangle_count());
   for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
@@ -77,13 +77,13 @@ const Vec3& SceneIndex::normal(std::size_t vertex) const {
   return scene_.primitives[at.primitive].mesh.normals[at.local];
 }
 
-Vec3 SceneIndex::centred_position(std::size_t vertex) const {
+Vec3 SceneIndex::position(std::size_t vertex) const {
   const Place at = vertex_place(vertex);
   return scene_.primitives[at.primitive].mesh.positions[at.local] - centre_;
 }
 
 Vec3 SceneIndex::ray_origin(std::size_t vertex) const {
-  return ray::offset_origin(centred_position(vertex), normal(vertex), magnitudes_[vertex]);
+  return ray::offset_origin(position(vertex), normal(vertex), magnitudes_[vertex]);
 }
 
 std::array<std::uint32_t, 3> SceneIndex::triangle(std::size_t triangle) const {

@@ -29,6 +29,8 @@ class SceneIndex {
   std::size_t vertex_count() const { return vertex_offsets_.back(); }
   std::size_t triangle_count() const { return triangle_offsets_.back(); }
   const Vec3& normal(std::size_t vertex) const;
+  /// Relative to the scene's centre.
+  Vec3 position(std::size_t vertex) const;
   /// Where the vertex's rays start, relative to the scene's centre as all that is traced: small
   /// scenes far from the origin keep their precision.
   Vec3 ray_origin(std::size_t vertex) const;
@@ -41,7 +43,6 @@ class SceneIndex {
 
  private:
   static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
-  Vec3 centred_position(std::size_t vertex) const;
 
   const mesh::Scene& scene_;
   std::vector<std::size_t> vertex_offsets_, triangle_offsets_;

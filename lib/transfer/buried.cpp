@@ -1,0 +1,103 @@
+#include "transfer/buried.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+namespace prt::transfer {
+
+namespace {
+
+constexpr std::size_t kLeakShare = 1000;  // rays that may slip out between faces: one in so many
+constexpr float kContact = 0x1p-16f;      // four steps of ray::offset_origin
+
+/// Vertices that are one point of the surface.
+struct Node {
+  std::vector<std::uint32_t> members;
+  std::set<std::size_t> neighbours;
+  bool resolved = true;
+};
+
+using Key = std::array<float, 6>;
+
+Key key_of(const SceneIndex& index, std::uint32_t vertex) {
+  const Vec3 p = index.position(vertex);
+  const Vec3 n = index.normal(vertex);
+  return {p.x, p.y, p.z, n.x, n.y, n.z};
+}
+
+/// The graph of the triangles that touch a buried vertex.
+std::vector<Node> buried_graph(const SceneIndex& index, const std::vector<std::uint8_t>& buried) {
+  std::vector<Node> nodes;
+  std::map<Key, std::size_t> node_of_key;
+  for (std::size_t t = 0; t < index.triangle_count(); ++t) {
+    const std::array<std::uint32_t, 3> corners = index.triangle(t);
+    if (std::none_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return buried[v]; })) {
+      continue;
+    }
+    std::array<std::size_t, 3> node;
+    for (std::size_t k = 0; k < 3; ++k) {
+      node[k] = node_of_key.try_emplace(key_of(index, corners[k]), nodes.size()).first->second;
+      if (node[k] == nodes.size()) nodes.emplace_back();
+      Node& at = nodes[node[k]];
+      if (std::find(at.members.begin(), at.members.end(), corners[k]) == at.members.end()) {
+        at.members.push_back(corners[k]);
+        at.resolved = at.resolved && !buried[corners[k]];
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      nodes[node[k]].neighbours.insert(node[(k + 1) % 3]);
+      nodes[node[k]].neighbours.insert(node[(k + 2) % 3]);
+    }
+  }
+  return nodes;
+}
+
+}  // namespace
+
+bool is_buried(Hemisphere& hemisphere, float magnitude) {
+  const std::size_t blocked_count = hemisphere.blocked().size();
+  if (blocked_count == 0 || hemisphere.visible().size() * kLeakShare > blocked_count) return false;
+  const std::span<const ray::Hit> hits = hemisphere.hits();
+  float inside = 0.0f, total = 0.0f;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const float cosine = hemisphere.blocked()[i].weight;
+    total += cosine;
+    if (hits[i].back_face || hits[i].t <= kContact * magnitude) inside += cosine;
+  }
+  return inside > 0.5f * total;
+}
+
+BuriedRepair::BuriedRepair(const SceneIndex& index, const std::vector<std::uint8_t>& buried) {
+  std::vector<Node> nodes = buried_graph(index, buried);
+  std::vector<std::size_t> ring;
+  do {
+    ring.clear();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i].resolved) continue;
+      const std::size_t begin = sources_.size();
+      for (std::size_t neighbour : nodes[i].neighbours) {
+        if (nodes[neighbour].resolved) sources_.push_back(nodes[neighbour].members.front());
+      }
+      if (sources_.size() == begin) continue;
+      ring.push_back(i);
+      for (std::uint32_t v : nodes[i].members) steps_.push_back({v, begin, sources_.size()});
+    }
+    for (std::size_t i : ring) nodes[i].resolved = true;
+  } while (!ring.empty());
+}
+
+void BuriedRepair::apply(float* rows, std::size_t stride) const {
+  for (const Step& step : steps_) {
+    float* row = rows + step.vertex * stride;
+    std::fill_n(row, stride, 0.0f);
+    const float weight = 1.0f / static_cast<float>(step.source_end - step.source_begin);
+    for (std::size_t s = step.source_begin; s < step.source_end; ++s) {
+      const float* source = rows + sources_[s] * stride;
+      for (std::size_t j = 0; j < stride; ++j) row[j] += weight * source[j];
+    }
+  }
+}
+
+}  // namespace prt::transfer

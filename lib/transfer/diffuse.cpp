@@ -1,0 +1,281 @@
+#include "transfer/diffuse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <numbers>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "sh/basis.h"
+#include "transfer/buried.h"
+#include "transfer/clamped_cosine.h"
+#include "transfer/reflection.h"
+
+namespace prt::transfer {
+
+namespace {
+
+constexpr int kMaxRayCount = 1 << 17;
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check_options(const DiffuseOptions& options) {
+  const auto check = [](const char* name, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    throw Error(
+        ErrorKind::usage, fmt::format("{} out of range", name),
+        {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
+  };
+  check("band count", options.band_count, 1, sh::kMaxBandCount);
+  check("ray count", options.ray_count, 1, kMaxRayCount);
+  check("bounce count", options.bounce_count, 0, 1000);
+  if (options.bounce_count > 0 && !options.shadowed) {
+    throw Error(ErrorKind::usage, "bounces need shadows",
+                {.advice = "Leave out one of unshadowed and bounces."});
+  }
+}
+
+bool is_coloured(const Vec3& albedo) { return albedo.x != albedo.y || albedo.y != albedo.z; }
+
+bool is_coloured(const image::Image& image) {
+  if (image.channel_count < 3) return false;
+  const auto step = static_cast<std::size_t>(image.channel_count);
+  for (std::size_t i = 0; i + 2 < image.pixels.size(); i += step) {
+    if (is_coloured(Vec3(image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]))) return true;
+  }
+  return false;
+}
+
+int choose_channel_count(const mesh::Scene& scene, const DiffuseOptions& options) {
+  if (options.channels != ChannelMode::automatic) {
+    return options.channels == ChannelMode::three ? 3 : 1;
+  }
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    for (std::size_t v = 0; v < primitive.mesh.vertex_count(); ++v) {
+      if (is_coloured(mesh::albedo_at_vertex(scene, primitive, v))) return 3;
+    }
+  }
+  // Between the vertices a texture shows in bounces only.
+  const bool textured =
+      options.bounce_count > 0 && std::any_of(scene.images.begin(), scene.images.end(),
+                                              [](const image::Image& i) { return is_coloured(i); });
+  return textured ? 3 : 1;
+}
+
+/// Basis functions at all directions, a padded row a direction.
+std::vector<float> basis_rows(int band_count, const Directions& directions) {
+  const auto count = static_cast<std::size_t>(sh::coefficient_count(band_count));
+  std::vector<float> rows(directions.count() * padded(count));
+  for (std::size_t d = 0; d < directions.count(); ++d) {
+    sh::evaluate(band_count, directions[d], {&rows[d * padded(count)], count});
+  }
+  return rows;
+}
+
+/// One bake: the signal's rows hold irradiance, bounces added up, until the last step multiplies
+/// them by albedo/pi.
+class DiffuseBake {
+ public:
+  DiffuseBake(const mesh::Scene& scene, const DiffuseOptions& options, DiffuseStats& stats)
+      : options_(options),
+        stats_(stats),
+        index_(scene),
+        directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
+        coefficient_count_(static_cast<std::size_t>(sh::coefficient_count(options.band_count))) {
+    stats_.build_seconds = watch_.seconds();
+    signal_.band_count = options.band_count;
+    signal_.channel_count = choose_channel_count(scene, options);
+    signal_.seed = options.seed;
+    signal_.ray_count = options.shadowed ? options.ray_count : 0;
+    signal_.bounce_count = options.bounce_count;
+    signal_.tool_version = PRTKIT_VERSION;
+    signal_.mesh_hash = mesh::mesh_hash(scene);
+    for (const mesh::Primitive& primitive : scene.primitives) {
+      signal_.blocks.push_back({primitive.name, primitive.mesh.vertex_count()});
+    }
+    row_size_ = static_cast<std::size_t>(signal_.dimension());
+    signal_.values.resize(index_.vertex_count() * row_size_);
+    buried_.resize(index_.vertex_count());
+  }
+
+  signal::TransferSignal run() {
+    if (options_.bounce_count > 0) {
+      reflection_ = std::make_unique<Reflection>(index_, directions_, signal_.channel_count,
+                                                 options_.hit_bytes);
+    }
+    if (options_.shadowed) {
+      direct_pass();
+    } else {
+      fill_unshadowed();
+    }
+    const BuriedRepair repair(index_, buried_);
+    repair.apply(signal_.values.data(), row_size_);
+    bounce(repair);
+    multiply_albedo();
+    count_buried(repair);
+    return std::move(signal_);
+  }
+
+ private:
+  float* row(std::size_t vertex) { return &signal_.values[vertex * row_size_]; }
+  float direction_weight() const {
+    return static_cast<float>(4.0 * std::numbers::pi / static_cast<double>(directions_.count()));
+  }
+
+  void fill_unshadowed() {
+    parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        clamped_cosine(options_.band_count, index_.normal(v), {row(v), coefficient_count_});
+        copy_to_channels(v);
+      }
+    });
+  }
+
+  void direct_pass() {
+    const Stopwatch watch;
+    const std::vector<float> basis = basis_rows(options_.band_count, directions_);
+    std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
+    Progress progress("shadows",
+                      index_.vertex_count() * static_cast<std::size_t>(options_.ray_count), "rays");
+    parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
+      Hemisphere hemisphere(index_, directions_);
+      std::vector<float> sum(padded(coefficient_count_));
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t vertex = index_.vertex_order()[i];
+        hemisphere.trace(vertex);
+        store_direct(vertex, hemisphere, basis, sum);
+        buried_[vertex] = is_buried(hemisphere, index_.magnitude(vertex));
+        if (reflection_) reflection_->record(begin / kVertexBlock, hemisphere);
+      }
+      if (reflection_) reflection_->finish_block(begin / kVertexBlock);
+      rays[begin / kVertexBlock] = hemisphere.rays_cast();
+      progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
+    });
+    stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    stats_.trace_seconds = watch.seconds();
+    stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
+  }
+
+  void store_direct(std::size_t vertex, const Hemisphere& hemisphere,
+                    const std::vector<float>& basis, std::vector<float>& sum) {
+    const bool closed_form = options_.closed_form;
+    std::fill(sum.begin(), sum.end(), 0.0f);
+    add_weighted_rows(closed_form ? hemisphere.blocked() : hemisphere.visible(), basis.data(),
+                      sum.size(), sum.data());
+    const std::span<float> irradiance(row(vertex), coefficient_count_);
+    if (closed_form) clamped_cosine(options_.band_count, index_.normal(vertex), irradiance);
+    const float weight = closed_form ? -direction_weight() : direction_weight();
+    for (std::size_t j = 0; j < coefficient_count_; ++j) irradiance[j] += weight * sum[j];
+    copy_to_channels(vertex);
+  }
+
+  void copy_to_channels(std::size_t vertex) {
+    for (std::size_t offset = coefficient_count_; offset < row_size_;
+         offset += coefficient_count_) {
+      std::copy_n(row(vertex), coefficient_count_, row(vertex) + offset);
+    }
+  }
+
+  /// Bounces act on each coefficient alone, so they go through as many at a time as memory allows.
+  void bounce(const BuriedRepair& repair) {
+    if (options_.bounce_count == 0 || index_.vertex_count() == 0) return;
+    const Stopwatch watch;
+    const auto channels = static_cast<std::size_t>(signal_.channel_count);
+    const std::size_t fit = options_.bounce_bytes /
+                            (2 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
+    const std::size_t columns =
+        fit > 0 ? std::min(fit * kRowPadding, padded(coefficient_count_)) : 1;
+    Progress progress("bounces",
+                      block_count(coefficient_count_, columns) *
+                          static_cast<std::size_t>(options_.bounce_count) * index_.vertex_count(),
+                      "vertices");
+    for (std::size_t first = 0; first < coefficient_count_; first += columns) {
+      bounce_columns(repair, first, columns, progress);
+    }
+    stats_.bounce_seconds = watch.seconds();
+  }
+
+  void bounce_columns(const BuriedRepair& repair, std::size_t first, std::size_t columns,
+                      Progress& progress) {
+    const auto channels = static_cast<std::size_t>(signal_.channel_count);
+    const std::size_t used = std::min(columns, coefficient_count_ - first);
+    std::vector<float> field(index_.vertex_count() * channels * columns), next(field.size());
+    const auto for_each_segment = [&](const auto& body) {
+      for (std::size_t i = 0; i < index_.vertex_count() * channels; ++i) {
+        body(&signal_.values[i * coefficient_count_ + first], &field[i * columns]);
+      }
+    };
+    for_each_segment([&](const float* value, float* f) { std::copy_n(value, used, f); });
+    for (int b = 0; b < options_.bounce_count; ++b) {
+      stats_.rays_cast += reflection_->gather(field.data(), columns, next.data());
+      repair.apply(next.data(), channels * columns);
+      std::swap(field, next);
+      for_each_segment([&](float* value, const float* f) {
+        for (std::size_t j = 0; j < used; ++j) value[j] += f[j];
+      });
+      progress.advance(index_.vertex_count());
+    }
+  }
+
+  void multiply_albedo() {
+    parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const SceneIndex::Place at = index_.vertex_place(v);
+        const Vec3 albedo =
+            channel_albedo(mesh::albedo_at_vertex(
+                               index_.scene(), index_.scene().primitives[at.primitive], at.local),
+                           signal_.channel_count);
+        for (std::size_t j = 0; j < row_size_; ++j) {
+          row(v)[j] *=
+              albedo[static_cast<int>(j / coefficient_count_)] * std::numbers::inv_pi_v<float>;
+        }
+      }
+    });
+  }
+
+  void count_buried(const BuriedRepair& repair) {
+    for (const mesh::Primitive& primitive : index_.scene().primitives) {
+      stats_.primitives.push_back(
+          {primitive.name, primitive.mesh.vertex_count(), primitive.mesh.triangle_count(), 0});
+    }
+    for (std::size_t v = 0; v < buried_.size(); ++v) {
+      stats_.primitives[index_.vertex_place(v).primitive].buried_vertex_count += buried_[v];
+      stats_.buried_vertex_count += buried_[v];
+    }
+    stats_.unrepaired_vertex_count = stats_.buried_vertex_count - repair.repaired_count();
+  }
+
+  const DiffuseOptions& options_;
+  DiffuseStats& stats_;
+  Stopwatch watch_;
+  SceneIndex index_;
+  Directions directions_;
+  std::size_t coefficient_count_, row_size_ = 0;
+  signal::TransferSignal signal_;
+  std::vector<std::uint8_t> buried_;
+  std::unique_ptr<Reflection> reflection_;
+};
+
+}  // namespace
+
+signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
+                                       DiffuseStats& stats) {
+  check_options(options);
+  stats = {};
+  return DiffuseBake(scene, options, stats).run();
+}
+
+}  // namespace prt::transfer

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "transfer/scenes.h"
+#include "transfer/clamped_cosine.h"
+
+namespace prt::transfer {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Error of 4096 Fibonacci directions on a smooth function with a kink at the horizon and, where
+// something shadows, a jump: measured at most 2e-4 and 2e-3 of irradiance / pi.
+constexpr double kSmoothError = 5e-4;
+constexpr double kJumpError = 4e-3;
+
+TEST(Shadow, ConvexObjectHasNoShadow) {
+  const TriangleMesh mesh = sphere(4);
+  const mesh::Scene scene = scene_of(mesh);
+  DiffuseStats stats;
+  const auto shadowed = compute_diffuse(scene, {}, stats);
+  const auto unshadowed = compute(scene, {.shadowed = false});
+  const auto sum = compute(scene, {.closed_form = false});
+  EXPECT_NEAR(static_cast<double>(stats.rays_cast),
+              2048.0 * static_cast<double>(mesh.vertex_count()),
+              0.01 * 2048.0 * static_cast<double>(mesh.vertex_count()));
+  EXPECT_EQ(shadowed.values, unshadowed.values);
+  EXPECT_LT(largest_difference(sum, unshadowed), kSmoothError);
+  EXPECT_GT(largest_difference(sum, unshadowed), 0.0);
+  std::vector<float> lobe(25);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    clamped_cosine(5, mesh.normals[v], lobe);
+    for (std::size_t i = 0; i < 25; ++i) EXPECT_NEAR(row(shadowed, v)[i], lobe[i] / kPi, 1e-6);
+    EXPECT_NEAR(under_constant_light(shadowed, v), 1.0, 1e-5);
+  }
+}
+
+TEST(Shadow, ScaleAndTranslationChangeNothing) {
+  TriangleMesh mesh = sphere(3);
+  append(mesh, grid({-2, -1.5f, 2}, {4, 0, 0}, {0, 0, -4}, 8));
+  for (Vec3& p : mesh.positions) {  // so that sums with the translation are exact
+    for (int k = 0; k < 3; ++k) p[k] = std::round(p[k] * 1024.0f) / 1024.0f;
+  }
+  const auto at_origin = compute(scene_of(mesh), {.ray_count = 512});
+  EXPECT_GT(largest_difference(at_origin, compute(scene_of(mesh), {.shadowed = false})), 0.1);
+  TriangleMesh moved = mesh;
+  for (Vec3& p : moved.positions) p += Vec3(4096.0f, -2048.0f, 1024.0f);
+  EXPECT_EQ(compute(scene_of(moved), {.ray_count = 512}).values, at_origin.values);
+  for (float scale : {0x1p-12f, 0x1p20f}) {
+    TriangleMesh scaled = mesh;
+    for (Vec3& p : scaled.positions) p *= scale;
+    EXPECT_LT(largest_difference(compute(scene_of(scaled), {.ray_count = 512}), at_origin), 1e-5);
+  }
+}
+
+// A floor point at the foot of a high wide wall loses all directions with x < 0. With the normal y
+// and half a hemisphere x > 0: ∫ y = pi/2, ∫ y² = pi/3, ∫ x y = 2/3, ∫ x y² = pi/8,
+// ∫ y (x² - y²) = ∫ y (3 z² - 1) = -pi/8, and odd powers of z vanish.
+TEST(Shadow, FloorBeforeWallMatchesClosedForm) {
+  mesh::Scene scene = scene_of(grid({0.001f, 0, 1}, {2, 0, 0}, {0, 0, -2}, 2));
+  add(scene, grid({0, -1, 1e4f}, {0, 0, -2e4f}, {0, 1e4f, 0}, 1));
+  const double expected[] = {0.282095 * kPi / 2,
+                             -0.488603 * kPi / 3,
+                             0.0,
+                             -0.488603 * 2 / 3,
+                             1.092548 * kPi / 8,
+                             0.0,
+                             -0.315392 * kPi / 8,
+                             0.0,
+                             -0.546274 * kPi / 8};
+  for (bool closed_form : {true, false}) {
+    const auto signal = compute(scene, {.band_count = 3, .closed_form = closed_form});
+    const std::size_t foot = 3;  // middle of the edge at the wall
+    for (std::size_t i = 0; i < 9; ++i) {
+      EXPECT_NEAR(row(signal, foot)[i], expected[i] / kPi, kJumpError) << i;
+    }
+  }
+}
+
+// Form factor from a floor element to a rectangle a wide and b high that stands on the floor at
+// distance c with a corner at its foot [Howell, catalogue of configuration factors, B-4]; two such
+// rectangles side by side make the wall.
+TEST(Shadow, FiniteWallTakesItsFormFactor) {
+  const double a = 1.5, b = 2.0, c = 0.75, s = std::sqrt(b * b + c * c);
+  const double factor = (std::atan(a / c) - c / s * std::atan(a / s)) / (2.0 * kPi);
+  mesh::Scene scene = scene_of(grid({0.75f, 0, 1}, {2, 0, 0}, {0, 0, -2}, 2));
+  add(scene, grid({0, 0, 1.5f}, {0, 0, -3}, {0, 2, 0}, 1));
+  for (bool closed_form : {true, false}) {
+    const auto signal = compute(scene, {.closed_form = closed_form});
+    EXPECT_NEAR(under_constant_light(signal, 3), 1.0 - 2.0 * factor, kJumpError);
+  }
+  EXPECT_GT(2.0 * factor, 0.1);
+}
+
+TEST(Shadow, BackFacesBlock) {
+  mesh::Scene scene = scene_of(grid({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 2));
+  const TriangleMesh roof = grid({-100, 1, 100}, {200, 0, 0}, {0, 0, -200}, 1);
+  add(scene, roof);  // its back to the floor
+  EXPECT_LT(under_constant_light(compute(scene, {}), 4), 0.01);
+  scene.primitives[1].mesh = turned_inside_out(roof);
+  EXPECT_LT(under_constant_light(compute(scene, {}), 4), 0.01);
+}
+
+TEST(Shadow, BytesDoNotDependOnThreadsOrRuns) {
+  mesh::Scene scene = scene_of(sphere(3));
+  add(scene, grid({-2, -1.2f, 2}, {4, 0, 0}, {0, 0, -4}, 20), {0.9f, 0.3f, 0.2f});
+  const DiffuseOptions options{.ray_count = 256, .bounce_count = 2};
+  set_thread_count(1);
+  const auto one = compute(scene, options);
+  set_thread_count(2);
+  const auto two = compute(scene, options);
+  const auto again = compute(scene, options);
+  set_thread_count(0);
+  EXPECT_EQ(one.values, two.values);
+  EXPECT_EQ(one.values, again.values);
+  DiffuseOptions other_seed = options;
+  other_seed.seed = 2;
+  EXPECT_NE(compute(scene, other_seed).values, one.values);
+}
+
+TEST(Shadow, SignalSaysWhatItIs) {
+  mesh::Scene scene = scene_of(sphere(1));
+  add(scene, grid({-2, -1.2f, 2}, {4, 0, 0}, {0, 0, -4}, 2));
+  DiffuseStats stats;
+  const auto signal = compute_diffuse(scene, {.band_count = 4, .ray_count = 64, .seed = 9}, stats);
+  EXPECT_EQ(signal.band_count, 4);
+  EXPECT_EQ(signal.channel_count, 1);
+  EXPECT_EQ(signal.ray_count, 64);
+  EXPECT_EQ(signal.seed, 9u);
+  EXPECT_EQ(signal.mesh_hash, mesh::mesh_hash(scene));
+  ASSERT_EQ(signal.blocks.size(), 2u);
+  EXPECT_EQ(signal.blocks[1].vertex_count, 9u);
+  EXPECT_EQ(signal.values.size(), scene.vertex_count() * 16);
+  ASSERT_EQ(stats.primitives.size(), 2u);
+  EXPECT_EQ(stats.primitives[1].triangle_count, 8u);
+}
+
+TEST(Shadow, EmptySceneGivesAnEmptySignal) {
+  EXPECT_TRUE(compute({}, {.bounce_count = 1}).values.empty());
+}
+
+TEST(Shadow, RefusesBadOptionsAndBadNormals) {
+  const auto kind_of = [](const mesh::Scene& scene, const DiffuseOptions& options) {
+    try {
+      compute(scene, options);
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    ADD_FAILURE() << "accepted";
+    return ErrorKind::failed;
+  };
+  mesh::Scene scene = scene_of(sphere(0));
+  EXPECT_EQ(kind_of(scene, {.band_count = 0}), ErrorKind::usage);
+  EXPECT_EQ(kind_of(scene, {.band_count = sh::kMaxBandCount + 1}), ErrorKind::usage);
+  EXPECT_EQ(kind_of(scene, {.ray_count = 0}), ErrorKind::usage);
+  EXPECT_EQ(kind_of(scene, {.bounce_count = -1}), ErrorKind::usage);
+  EXPECT_EQ(kind_of(scene, {.bounce_count = 1, .shadowed = false}), ErrorKind::usage);
+  scene.primitives[0].mesh.normals[2].y = NAN;
+  EXPECT_EQ(kind_of(scene, {}), ErrorKind::bad_input);
+}
+
+}  // namespace
+}  // namespace prt::transfer
