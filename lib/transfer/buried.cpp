@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kLeakShare = 1000;  // rays that may slip out between faces: one in so many
 constexpr float kContact = 0x1p-16f;      // four steps of ray::offset_origin
+constexpr float kInsideShare = 0.9f;      // a corner of a dark room touches walls with 3/4
 
 /// Vertices that are one point of the surface.
 struct Node {
@@ -66,7 +67,7 @@ bool is_buried(Hemisphere& hemisphere, float magnitude) {
     total += cosine;
     if (hits[i].back_face || hits[i].t <= kContact * magnitude) inside += cosine;
   }
-  return inside > 0.5f * total;
+  return inside > kInsideShare * total;
 }
 
 BuriedRepair::BuriedRepair(const SceneIndex& index, const std::vector<std::uint8_t>& buried) {

@@ -12,8 +12,8 @@
 namespace prt::transfer {
 
 /// Whether the vertex last traced is buried: of its rays at most one in a thousand leaves the
-/// scene, and most of the others (by cosine) hit backs of faces, which only a point inside of
-/// something sees, or end within rounding of their origin. A dark open cavity shows fronts at a
+/// scene, and nine in ten of the others (by cosine) hit backs of faces, which only a point inside
+/// of something sees, or end within rounding of their origin. A dark open cavity shows fronts at a
 /// distance.
 bool is_buried(Hemisphere& hemisphere, float magnitude);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/error.h"
 #include "transfer/spatial_order.h"
@@ -54,14 +55,54 @@ SceneIndex::SceneIndex(const mesh::Scene& scene)
   engine_ = ray::make_embree_engine({positions, indices});
   vertex_order_ = spatial_order(positions);
 
-  magnitudes_.assign(vertex_count(), 0.0f);
+  find_ray_origins(positions, indices);
+}
+
+void SceneIndex::find_ray_origins(std::span<const Vec3> positions,
+                                  std::span<const std::uint32_t> indices) {
+  magnitudes_.assign(positions.size(), 0.0f);
+  std::vector<Vec3> inward(positions.size(), Vec3(0.0f));  // sums of unit vectors
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    float largest = 0.0f;
-    for (std::size_t k = i; k < i + 3; ++k) {
-      largest = std::max(largest, largest_coordinate(positions[indices[k]]));
+    const std::uint32_t corners[3] = {indices[i], indices[i + 1], indices[i + 2]};
+    const Vec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
+    const Vec3 middle = a / 3.0f + b / 3.0f + c / 3.0f;
+    const float largest =
+        std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
+    for (std::uint32_t k : corners) {
+      magnitudes_[k] = std::max(magnitudes_[k], largest);
+      inward[k] += (middle - positions[k]).normalized();
     }
-    for (std::size_t k = i; k < i + 3; ++k) {
-      magnitudes_[indices[k]] = std::max(magnitudes_[indices[k]], largest);
+  }
+  share_between_equals(positions, inward);
+  ray_origins_.resize(positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const Vec3 n = normal(v);
+    const Vec3 tangential = (inward[v] - n * n.dot(inward[v])).normalized();
+    ray_origins_[v] = ray::offset_origin(positions[v], n + tangential, magnitudes_[v]);
+  }
+}
+
+void SceneIndex::share_between_equals(std::span<const Vec3> positions, std::vector<Vec3>& inward) {
+  const auto key = [&](std::uint32_t v) {
+    const Vec3 &p = positions[v], &n = normal(v);
+    return std::array<float, 6>{p.x, p.y, p.z, n.x, n.y, n.z};
+  };
+  std::vector<std::uint32_t> sorted(positions.size());
+  std::iota(sorted.begin(), sorted.end(), 0u);
+  std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const auto ka = key(a), kb = key(b);
+    return ka != kb ? ka < kb : a < b;
+  });
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    Vec3 sum(0.0f);
+    float largest = 0.0f;
+    for (end = begin; end < sorted.size() && key(sorted[end]) == key(sorted[begin]); ++end) {
+      sum += inward[sorted[end]];
+      largest = std::max(largest, magnitudes_[sorted[end]]);
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      inward[sorted[i]] = sum;
+      magnitudes_[sorted[i]] = largest;
     }
   }
 }
@@ -80,10 +121,6 @@ const Vec3& SceneIndex::normal(std::size_t vertex) const {
 Vec3 SceneIndex::position(std::size_t vertex) const {
   const Place at = vertex_place(vertex);
   return scene_.primitives[at.primitive].mesh.positions[at.local] - centre_;
-}
-
-Vec3 SceneIndex::ray_origin(std::size_t vertex) const {
-  return ray::offset_origin(position(vertex), normal(vertex), magnitudes_[vertex]);
 }
 
 std::array<std::uint32_t, 3> SceneIndex::triangle(std::size_t triangle) const {

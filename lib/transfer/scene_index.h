@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "mesh/scene.h"
@@ -31,6 +32,20 @@ class SceneIndex {
   const Vec3& normal(std::size_t vertex) const;
   /// Relative to the scene's centre.
   Vec3 position(std::size_t vertex) const;
+  /// Where the vertex's rays start: off the surface by ray::offset_origin's step, and by as much
+  /// towards the middle of the triangles around it. The latter keeps the rays of a floor's edge in
+  /// front of the wall that stands there. Relative to the scene's centre, as all that is traced:
+  /// small scenes far from the origin keep their precision. The same for vertices of equal position
+  /// and normal.
+  const Vec3& ray_origin(std::size_t vertex) const { return ray_origins_[vertex]; }
+  /// Relative to the scene's centre.
+  Vec3 position(std::size_t vertex) const;
+  /// Where the vertex's rays start: off the surface by ray::offset_origin's step, and by as much
+  /// towards the middle of the triangles around it. The latter keeps the rays of a floor's edge in
+  /// front of the wall that stands there. Relative to the scene's centre, as all that is traced:
+  /// small scenes far from the origin keep their precision. The same for vertices of equal position
+  /// and normal.
+  const Vec3& ray_origin(std::size_t vertex) const { return ray_origins_[vertex]; }
   /// Where the vertex's rays start, relative to the scene's centre as all that is traced: small
   /// scenes far from the origin keep their precision.
   Vec3 ray_origin(std::size_t vertex) const;
@@ -42,12 +57,15 @@ class SceneIndex {
   const std::vector<std::uint32_t>& vertex_order() const { return vertex_order_; }
 
  private:
+  void find_ray_origins(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
+  void share_between_equals(std::span<const Vec3> positions, std::vector<Vec3>& inward);
   static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
 
   const mesh::Scene& scene_;
   std::vector<std::size_t> vertex_offsets_, triangle_offsets_;
   Vec3 centre_{0.0f};
   std::vector<float> magnitudes_;
+  std::vector<Vec3> ray_origins_;
   std::vector<std::uint32_t> vertex_order_;
   std::unique_ptr<ray::Engine> engine_;
 };

@@ -2,9 +2,9 @@
 
 #include <set>
 
-#include "transfer/scenes.h"
 #include "transfer/clamped_cosine.h"
 #include "transfer/directions.h"
+#include "transfer/scenes.h"
 #include "transfer/spatial_order.h"
 
 namespace prt::transfer {

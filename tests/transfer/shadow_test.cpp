@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "transfer/scenes.h"
 #include "transfer/clamped_cosine.h"
+#include "transfer/scenes.h"
 
 namespace prt::transfer {
 namespace {
