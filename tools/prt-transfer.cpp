@@ -66,7 +66,7 @@ void add_figures(Report& report, const transfer::DiffuseStats& stats,
 }
 
 mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
-  const StageTimer timer(report, "read");
+  const StageTimer timer(report, "load");
   report.add_input(path);
   return gltf::Document::load(path).scene();
 }
@@ -86,7 +86,7 @@ void bake(const Options& options, const cli::CommonOptions& common, Report& repo
                  stats.buried_vertex_count - stats.unrepaired_vertex_count);
   }
   {
-    const StageTimer timer(report, "write");
+    const StageTimer timer(report, "save");
     signal::write_transfer(options.output, signal, common.no_clobber);
   }
   report.add_output(options.output);

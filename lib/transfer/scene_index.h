@@ -38,17 +38,6 @@ class SceneIndex {
   /// small scenes far from the origin keep their precision. The same for vertices of equal position
   /// and normal.
   const Vec3& ray_origin(std::size_t vertex) const { return ray_origins_[vertex]; }
-  /// Relative to the scene's centre.
-  Vec3 position(std::size_t vertex) const;
-  /// Where the vertex's rays start: off the surface by ray::offset_origin's step, and by as much
-  /// towards the middle of the triangles around it. The latter keeps the rays of a floor's edge in
-  /// front of the wall that stands there. Relative to the scene's centre, as all that is traced:
-  /// small scenes far from the origin keep their precision. The same for vertices of equal position
-  /// and normal.
-  const Vec3& ray_origin(std::size_t vertex) const { return ray_origins_[vertex]; }
-  /// Where the vertex's rays start, relative to the scene's centre as all that is traced: small
-  /// scenes far from the origin keep their precision.
-  Vec3 ray_origin(std::size_t vertex) const;
   /// Largest coordinate around the vertex, relative to the centre; the unit of rounding errors.
   float magnitude(std::size_t vertex) const { return magnitudes_[vertex]; }
   /// Vertices of a triangle, numbered through.
