@@ -14,6 +14,10 @@ namespace prt::transfer {
 
 namespace {
 
+// Mean of the unit vectors from a vertex to the middles of its triangles, along the surface: about
+// 0.6 at the edge of a regular grid, more at its corner, 0 inside. Below this it is not an edge.
+constexpr float kEdgeShift = 0.25f;
+
 float largest_coordinate(const Vec3& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 }
@@ -61,7 +65,7 @@ SceneIndex::SceneIndex(const mesh::Scene& scene)
 void SceneIndex::find_ray_origins(std::span<const Vec3> positions,
                                   std::span<const std::uint32_t> indices) {
   magnitudes_.assign(positions.size(), 0.0f);
-  std::vector<Vec3> inward(positions.size(), Vec3(0.0f));  // sums of unit vectors
+  std::vector<Vec4> inward(positions.size(), Vec4(0.0f));  // sum of unit vectors, their number
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     const std::uint32_t corners[3] = {indices[i], indices[i + 1], indices[i + 2]};
     const Vec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
@@ -70,19 +74,22 @@ void SceneIndex::find_ray_origins(std::span<const Vec3> positions,
         std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
     for (std::uint32_t k : corners) {
       magnitudes_[k] = std::max(magnitudes_[k], largest);
-      inward[k] += (middle - positions[k]).normalized();
+      const Vec3 towards = (middle - positions[k]).normalized();
+      inward[k] += Vec4(towards.x, towards.y, towards.z, 1.0f);
     }
   }
   share_between_equals(positions, inward);
   ray_origins_.resize(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const Vec3 n = normal(v);
-    const Vec3 tangential = (inward[v] - n * n.dot(inward[v])).normalized();
+    const Vec3 mean = Vec3(inward[v].x, inward[v].y, inward[v].z) / std::max(1.0f, inward[v].w);
+    Vec3 tangential = mean - n * n.dot(mean);
+    if (tangential.length() < kEdgeShift) tangential = Vec3(0.0f);
     ray_origins_[v] = ray::offset_origin(positions[v], n + tangential, magnitudes_[v]);
   }
 }
 
-void SceneIndex::share_between_equals(std::span<const Vec3> positions, std::vector<Vec3>& inward) {
+void SceneIndex::share_between_equals(std::span<const Vec3> positions, std::vector<Vec4>& inward) {
   const auto key = [&](std::uint32_t v) {
     const Vec3 &p = positions[v], &n = normal(v);
     return std::array<float, 6>{p.x, p.y, p.z, n.x, n.y, n.z};
@@ -94,7 +101,7 @@ void SceneIndex::share_between_equals(std::span<const Vec3> positions, std::vect
     return ka != kb ? ka < kb : a < b;
   });
   for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    Vec3 sum(0.0f);
+    Vec4 sum(0.0f);
     float largest = 0.0f;
     for (end = begin; end < sorted.size() && key(sorted[end]) == key(sorted[begin]); ++end) {
       sum += inward[sorted[end]];

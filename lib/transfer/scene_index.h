@@ -32,11 +32,11 @@ class SceneIndex {
   const Vec3& normal(std::size_t vertex) const;
   /// Relative to the scene's centre.
   Vec3 position(std::size_t vertex) const;
-  /// Where the vertex's rays start: off the surface by ray::offset_origin's step, and by as much
-  /// towards the middle of the triangles around it. The latter keeps the rays of a floor's edge in
-  /// front of the wall that stands there. Relative to the scene's centre, as all that is traced:
-  /// small scenes far from the origin keep their precision. The same for vertices of equal position
-  /// and normal.
+  /// Where the vertex's rays start: off the surface by ray::offset_origin's step and, at the edge
+  /// of a surface, about as much away from the edge: the rays of a floor's edge start in front of
+  /// the wall that stands there, and no light comes in between. Relative to the scene's centre, as
+  /// all that is traced: small scenes far from the origin keep their precision. The same for
+  /// vertices of equal position and normal.
   const Vec3& ray_origin(std::size_t vertex) const { return ray_origins_[vertex]; }
   /// Largest coordinate around the vertex, relative to the centre; the unit of rounding errors.
   float magnitude(std::size_t vertex) const { return magnitudes_[vertex]; }
@@ -47,7 +47,7 @@ class SceneIndex {
 
  private:
   void find_ray_origins(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
-  void share_between_equals(std::span<const Vec3> positions, std::vector<Vec3>& inward);
+  void share_between_equals(std::span<const Vec3> positions, std::vector<Vec4>& inward);
   static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
 
   const mesh::Scene& scene_;

@@ -68,9 +68,9 @@ TEST(Buried, BodyInsideAnotherHasNothingToRepairFrom) {
 
 TEST(Buried, SplitVerticesGetTheSameValue) {
   // The floor cut in two along x = 0, as a seam of texture coordinates does.
-  mesh::Scene scene = scene_of(grid({-2, 0, 2}, {2, 0, 0}, {0, 0, -4}, 12));
-  TriangleMesh& floor = scene.primitives[0].mesh;
+  TriangleMesh floor = grid({-2, 0, 2}, {2, 0, 0}, {0, 0, -4}, 12);
   append(floor, grid({0, 0, 2}, {2, 0, 0}, {0, 0, -4}, 12));
+  mesh::Scene scene = scene_of(floor);
   add(scene, box({-0.5f, 0, -0.9f}, {0.8f, 1, 0.9f}, 2));
   const auto signal = compute(scene, {.ray_count = 256, .bounce_count = 1});
   std::size_t compared = 0;

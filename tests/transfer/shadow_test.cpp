@@ -36,6 +36,35 @@ TEST(Shadow, ConvexObjectHasNoShadow) {
   }
 }
 
+TEST(Shadow, SharpSmoothShadedBodyHasNone) {
+  // Few, large faces that lean far from the normals of their vertices.
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    const auto sign = [&](int bit) { return (i >> bit & 1) ? 1.0f : -1.0f; };
+    mesh.positions.push_back({sign(0), sign(1), sign(2)});
+    mesh.normals.push_back(mesh.positions.back().normalized());
+  }
+  mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  DiffuseStats stats;
+  const auto signal = compute_diffuse(scene_of(mesh), {}, stats);
+  EXPECT_EQ(stats.buried_vertex_count, 0u);
+  for (std::size_t v = 0; v < 8; ++v) EXPECT_GT(under_constant_light(signal, v), 0.8);
+}
+
+// No light comes in where floor and walls of a closed room meet, each a surface of its own.
+TEST(Shadow, JointsOfARoomAreTight) {
+  for (float scale : {1e-3f, 1.0f, 1e3f}) {
+    const TriangleMesh room = turned_inside_out(
+        box(Vec3(-1.0f, -0.7f, -1.3f) * scale, Vec3(1.1f, 0.9f, 1.7f) * scale, 5));
+    DiffuseStats stats;
+    const auto signal =
+        compute_diffuse(scene_of(room), {.ray_count = 512, .closed_form = false}, stats);
+    EXPECT_EQ(stats.buried_vertex_count, 0u);
+    for (float value : signal.values) EXPECT_EQ(value, 0.0f);
+  }
+}
+
 TEST(Shadow, ScaleAndTranslationChangeNothing) {
   TriangleMesh mesh = sphere(3);
   append(mesh, grid({-2, -1.5f, 2}, {4, 0, 0}, {0, 0, -4}, 8));
