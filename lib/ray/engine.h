@@ -47,7 +47,7 @@ struct Triangles {
 class Engine {
  public:
   virtual ~Engine() = default;
-  /// hits.size() == rays.size(). A hit nothing was found for has triangle == kNoHit.
+  /// hits.size() == rays.size(). Where nothing is hit, triangle is kNoHit.
   virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits,
                            Coherence coherence) const = 0;
   /// occluded[i] = 1 when anything, front or back, lies in (t_near, t_far], else 0.
@@ -55,14 +55,16 @@ class Engine {
                         Coherence coherence) const = 0;
 };
 
-/// Embree 3, robust mode. Copies what it needs of the triangles.
+/// Embree 3, robust mode: tight along edges; of rays aimed at a vertex to the last bit a few in a
+/// thousand pass. Copies what it needs of the triangles.
 std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles);
 
-/// A ray origin just off the surface at p on the side of the unit normal n, far enough that
-/// rounding cannot put it on the other side: a step of a few units in the last place of the numbers
-/// that p comes from, after [Wächter, Binder 2019, Ray Tracing Gems ch. 6]. `magnitude` is the
-/// largest absolute coordinate of those numbers (of the triangles around p) and makes the step
-/// right at any scale; the default is that paper's, for p near the origin of a scene in metres.
+/// A ray origin just off the surface at p on the side of the normal n (of about unit length), far
+/// enough that rounding cannot put it on the other side: a step of a few units in the last place of
+/// the numbers that p comes from, after [Wächter, Binder 2019, Ray Tracing Gems ch. 6]. `magnitude`
+/// is the largest absolute coordinate of those numbers (of the triangles around p) and makes the
+/// step right at any scale; the default is that paper's, for p near the origin of a scene in
+/// metres.
 Vec3 offset_origin(const Vec3& p, const Vec3& n, float magnitude = 1.0f / 32.0f);
 
 }  // namespace prt::ray

@@ -4,39 +4,55 @@ namespace prt::transfer {
 
 Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
     : index_(index), directions_(directions), origin_(0.0f) {
-  rays_.resize(directions.count());
-  above_.resize(directions.count());
-  occluded_.resize(directions.count());
+  const std::size_t count = directions.count();
+  cosines_.resize(count);
+  above_.resize(count);
+  rays_.resize(count);
+  occluded_.resize(count);
+  blocked_.resize(count);
+  visible_.resize(count);
 }
 
+// Neighbouring directions of one vertex make the fastest packets (bench/ray.cpp). The lists are
+// made without branches, which would be mispredicted: what does not belong is overwritten.
 void Hemisphere::trace(std::size_t vertex) {
-  const Vec3 normal = index_.normal(vertex);
   origin_ = index_.ray_origin(vertex);
-  // Neighbouring directions of one vertex make the fastest packets (bench/ray.cpp). Every ray is
-  // written and those below the horizon are overwritten: no branch to mispredict.
-  std::size_t count = 0;
-  for (std::size_t d = 0; d < directions_.count(); ++d) {
-    const Vec3 direction = directions_[d];
-    const float cosine = normal.dot(direction);
-    rays_[count] = {origin_, 0.0f, direction};
-    above_[count] = {static_cast<std::uint32_t>(d), cosine};
-    count += cosine > 0.0f;
+  const std::size_t count = find_above(index_.normal(vertex));
+  for (std::size_t i = 0; i < count; ++i) {
+    rays_[i].origin = origin_;
+    rays_[i].direction = directions_[above_[i]];
   }
   index_.engine().occluded({rays_.data(), count}, {occluded_.data(), count},
                            ray::Coherence::coherent);
   rays_cast_ += count;
-  blocked_.clear();
-  visible_.clear();
-  for (std::size_t i = 0; i < count; ++i) (occluded_[i] ? blocked_ : visible_).push_back(above_[i]);
+  blocked_count_ = visible_count_ = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    blocked_[blocked_count_] = visible_[visible_count_] = {above_[i], cosines_[above_[i]]};
+    blocked_count_ += occluded_[i];
+    visible_count_ += 1u - occluded_[i];
+  }
+}
+
+std::size_t Hemisphere::find_above(const Vec3& normal) {
+  const float *x = directions_.x.data(), *y = directions_.y.data(), *z = directions_.z.data();
+  for (std::size_t d = 0; d < cosines_.size(); ++d) {
+    cosines_[d] = normal.x * x[d] + normal.y * y[d] + normal.z * z[d];
+  }
+  std::size_t count = 0;
+  for (std::size_t d = 0; d < cosines_.size(); ++d) {
+    above_[count] = static_cast<std::uint32_t>(d);
+    count += cosines_[d] > 0.0f;
+  }
+  return count;
 }
 
 std::span<const ray::Hit> Hemisphere::hits() {
-  hits_.resize(blocked_.size());
-  for (std::size_t i = 0; i < blocked_.size(); ++i) {
-    rays_[i] = {origin_, 0.0f, directions_[blocked_[i].row]};
+  hits_.resize(blocked_count_);
+  for (std::size_t i = 0; i < blocked_count_; ++i) {
+    rays_[i].direction = directions_[blocked_[i].row];
   }
-  index_.engine().closest_hit({rays_.data(), blocked_.size()}, hits_, ray::Coherence::coherent);
-  rays_cast_ += blocked_.size();
+  index_.engine().closest_hit({rays_.data(), blocked_count_}, hits_, ray::Coherence::coherent);
+  rays_cast_ += blocked_count_;
   return hits_;
 }
 

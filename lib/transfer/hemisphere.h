@@ -20,8 +20,8 @@ class Hemisphere {
   /// Casts a shadow ray in each direction above the vertex's horizon and sorts them into blocked()
   /// and visible(): direction number and cosine, in the order of the directions.
   void trace(std::size_t vertex);
-  std::span<const WeightedRow> blocked() const { return blocked_; }
-  std::span<const WeightedRow> visible() const { return visible_; }
+  std::span<const WeightedRow> blocked() const { return {blocked_.data(), blocked_count_}; }
+  std::span<const WeightedRow> visible() const { return {visible_.data(), visible_count_}; }
 
   /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked().
   std::span<const ray::Hit> hits();
@@ -30,11 +30,18 @@ class Hemisphere {
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
+  /// Fills cosines_ of all directions and above_ with those above the horizon; returns their
+  /// number.
+  std::size_t find_above(const Vec3& normal);
+
   const SceneIndex& index_;
   const Directions& directions_;
   Vec3 origin_;
+  std::vector<float> cosines_;
+  std::vector<std::uint32_t> above_;
   std::vector<ray::Ray> rays_;
-  std::vector<WeightedRow> above_, blocked_, visible_;
+  std::vector<WeightedRow> blocked_, visible_;
+  std::size_t blocked_count_ = 0, visible_count_ = 0;
   std::vector<std::uint8_t> occluded_;
   std::vector<ray::Hit> hits_;
   std::uint64_t rays_cast_ = 0;
