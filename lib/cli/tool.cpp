@@ -32,7 +32,9 @@ Tool::Tool(std::string name, std::string description, std::string example)
     : name_(std::move(name)), app_(std::move(description), name_) {
   app_.footer("Example:\n  " + example);
   app_.get_formatter()->column_width(34);
-  app_.option_defaults()->always_capture_default();
+  // The last of repeated options counts, so that makefiles and scripts can override their defaults.
+  app_.option_defaults()->always_capture_default()->multi_option_policy(
+      CLI::MultiOptionPolicy::TakeLast);
   app_.set_version_flag("--version", [this] {
     return fmt::format("{} {} ({})", name_, PRTKIT_VERSION, simd_level_name(simd_level()));
   });
