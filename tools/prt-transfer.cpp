@@ -31,6 +31,11 @@ void add_options(CLI::App& app, Options& options) {
   CLI::Option* const bounces =
       app.add_option("--bounces", options.diffuse.bounce_count, "Bounces of interreflection");
   bounces->check(CLI::Range(0, 1000))->capture_default_str()->group("Transfer");
+  app.add_option("--bounce-rays", options.diffuse.bounce_ray_count,
+                 "Rays per vertex for what is reflected; 0: a quarter of --rays")
+      ->check(CLI::Range(0, 1 << 17))
+      ->capture_default_str()
+      ->group("Transfer");
   app.add_flag("--unshadowed", options.unshadowed, "No rays: the closed form of a convex body")
       ->excludes(bounces)
       ->group("Transfer");

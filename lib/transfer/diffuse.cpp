@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -42,6 +42,7 @@ void check_options(const DiffuseOptions& options) {
   check("band count", options.band_count, 1, sh::kMaxBandCount);
   check("ray count", options.ray_count, 1, kMaxRayCount);
   check("bounce count", options.bounce_count, 0, 1000);
+  check("bounce ray count", options.bounce_ray_count, 0, kMaxRayCount);
   if (options.bounce_count > 0 && !options.shadowed) {
     throw Error(ErrorKind::usage, "bounces need shadows",
                 {.advice = "Leave out one of unshadowed and bounces."});
@@ -112,18 +113,16 @@ class DiffuseBake {
   }
 
   signal::TransferSignal run() {
-    if (options_.bounce_count > 0) {
-      reflection_ = std::make_unique<Reflection>(index_, directions_, signal_.channel_count,
-                                                 options_.hit_bytes);
-    }
     if (options_.shadowed) {
       direct_pass();
     } else {
       fill_unshadowed();
     }
+    std::vector<float> blocked =
+        options_.bounce_count > 0 ? blocked_irradiance() : std::vector<float>();
     const BuriedRepair repair(index_, buried_);
     repair.apply(signal_.values.data(), row_size_);
-    bounce(repair);
+    if (options_.bounce_count > 0) bounce(repair, std::move(blocked));
     multiply_albedo();
     count_buried(repair);
     return std::move(signal_);
@@ -158,9 +157,7 @@ class DiffuseBake {
         hemisphere.trace(vertex);
         store_direct(vertex, hemisphere, basis, sum);
         buried_[vertex] = is_buried(hemisphere, index_.magnitude(vertex));
-        if (reflection_) reflection_->record(begin / kVertexBlock, hemisphere);
       }
-      if (reflection_) reflection_->finish_block(begin / kVertexBlock);
       rays[begin / kVertexBlock] = hemisphere.rays_cast();
       progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
     });
@@ -189,10 +186,29 @@ class DiffuseBake {
     }
   }
 
+  /// ∫ (1 - V) max(0, cos) of every vertex: pi less what a constant light brings.
+  std::vector<float> blocked_irradiance() {
+    const float constant_basis = 0.5f * std::sqrt(std::numbers::inv_pi_v<float>);
+    std::vector<float> blocked(index_.vertex_count());
+    for (std::size_t v = 0; v < blocked.size(); ++v) {
+      blocked[v] = std::max(0.0f, std::numbers::pi_v<float> - row(v)[0] / constant_basis);
+    }
+    return blocked;
+  }
+
   /// Bounces act on each coefficient alone, so they go through as many at a time as memory allows.
-  void bounce(const BuriedRepair& repair) {
-    if (options_.bounce_count == 0 || index_.vertex_count() == 0) return;
+  void bounce(const BuriedRepair& repair, std::vector<float> blocked) {
+    if (index_.vertex_count() == 0) return;
     const Stopwatch watch;
+    const int rays =
+        options_.bounce_ray_count > 0 ? options_.bounce_ray_count : (options_.ray_count + 3) / 4;
+    Reflection reflection(index_,
+                          make_directions(2 * static_cast<std::size_t>(rays), options_.seed),
+                          signal_.channel_count, std::move(blocked), options_.hit_bytes);
+    {
+      Progress progress("bounce rays", index_.vertex_count(), "vertices");
+      stats_.rays_cast += reflection.trace(progress);
+    }
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t fit = options_.bounce_bytes /
                             (2 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
@@ -203,13 +219,13 @@ class DiffuseBake {
                           static_cast<std::size_t>(options_.bounce_count) * index_.vertex_count(),
                       "vertices");
     for (std::size_t first = 0; first < coefficient_count_; first += columns) {
-      bounce_columns(repair, first, columns, progress);
+      bounce_columns(repair, reflection, first, columns, progress);
     }
     stats_.bounce_seconds = watch.seconds();
   }
 
-  void bounce_columns(const BuriedRepair& repair, std::size_t first, std::size_t columns,
-                      Progress& progress) {
+  void bounce_columns(const BuriedRepair& repair, const Reflection& reflection, std::size_t first,
+                      std::size_t columns, Progress& progress) {
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t used = std::min(columns, coefficient_count_ - first);
     std::vector<float> field(index_.vertex_count() * channels * columns), next(field.size());
@@ -220,7 +236,7 @@ class DiffuseBake {
     };
     for_each_segment([&](const float* value, float* f) { std::copy_n(value, used, f); });
     for (int b = 0; b < options_.bounce_count; ++b) {
-      stats_.rays_cast += reflection_->gather(field.data(), columns, next.data());
+      stats_.rays_cast += reflection.gather(field.data(), columns, next.data());
       repair.apply(next.data(), channels * columns);
       std::swap(field, next);
       for_each_segment([&](float* value, const float* f) {
@@ -266,7 +282,6 @@ class DiffuseBake {
   std::size_t coefficient_count_, row_size_ = 0;
   signal::TransferSignal signal_;
   std::vector<std::uint8_t> buried_;
-  std::unique_ptr<Reflection> reflection_;
 };
 
 }  // namespace

@@ -5,10 +5,10 @@
 //   E⁰_v       = ∫ V(v, d) max(0, n_v·d) Y(d) dd
 //   E^(b+1)_v  = ∫ (1 - V(v, d)) max(0, n_v·d) albedo(h) / pi · E^b(h) dd,  h what d hits first
 //
-// The integrals are sums over one set of directions for all vertices (transfer/directions.h). What
-// nothing blocks is known in closed form (transfer/clamped_cosine.h), so E⁰ is that minus the sum
-// over blocked directions: exact on a convex body, and blocked and reflected energy balance
-// exactly.
+// The integrals are sums over one set of directions for all vertices (transfer/directions.h), a
+// smaller one for what is reflected. What nothing blocks is known in closed form
+// (transfer/clamped_cosine.h), so E⁰ is that minus the sum over blocked directions: exact on a
+// convex body, and blocked and reflected energy balance exactly (transfer/reflection.h).
 //
 // Conventions. A direction below the horizon of the shading normal counts nothing. Front and back
 // faces block. E at a hit is interpolated over its triangle, the albedo is the hit point's own. The
@@ -33,16 +33,17 @@ namespace prt::transfer {
 enum class ChannelMode { automatic, one, three };
 
 struct DiffuseOptions {
-  int band_count = 5;    ///< of the light, 1 to sh::kMaxBandCount
-  int ray_count = 2048;  ///< per vertex, over its hemisphere (on average)
-  int bounce_count = 0;  ///< of interreflection; needs shadowed
-  bool shadowed = true;  ///< false: no rays, the closed form
+  int band_count = 5;        ///< of the light, 1 to sh::kMaxBandCount
+  int ray_count = 2048;      ///< per vertex, over its hemisphere (on average)
+  int bounce_count = 0;      ///< of interreflection; needs shadowed
+  int bounce_ray_count = 0;  ///< per vertex, for what is reflected; 0: a quarter of ray_count
+  bool shadowed = true;      ///< false: no rays, the closed form
   ChannelMode channels = ChannelMode::automatic;
   std::uint64_t seed = 1;  ///< turns the set of directions
   /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
   bool closed_form = true;
-  std::size_t hit_bytes = std::size_t{256} << 20;     ///< for hits kept from bounce to bounce
-  std::size_t bounce_bytes = std::size_t{128} << 20;  ///< for the two fields of a bounce
+  std::size_t hit_bytes = std::size_t{320} << 20;    ///< for hits kept from bounce to bounce
+  std::size_t bounce_bytes = std::size_t{64} << 20;  ///< for the two fields of a bounce
 };
 
 struct DiffuseStats {
@@ -56,10 +57,10 @@ struct DiffuseStats {
   std::size_t buried_vertex_count = 0;      ///< detected
   std::size_t unrepaired_vertex_count = 0;  ///< of these, connected to no vertex that is not
   std::uint64_t rays_cast = 0;              ///< occlusion and closest hit
-  double rays_per_second = 0.0;             ///< of the first pass, which casts all or most
+  double rays_per_second = 0.0;             ///< of the shadow pass
   double build_seconds = 0.0;               ///< the ray engine's tree, the order of vertices
-  double trace_seconds = 0.0;               ///< the first pass: shadows, hits of the blocked rays
-  double bounce_seconds = 0.0;              ///< gathering, with what rays it casts again
+  double trace_seconds = 0.0;               ///< the shadow pass
+  double bounce_seconds = 0.0;              ///< rays of the bounces, and gathering
 };
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.

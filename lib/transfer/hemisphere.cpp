@@ -3,7 +3,7 @@
 namespace prt::transfer {
 
 Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
-    : index_(index), directions_(directions), origin_(0.0f) {
+    : index_(index), directions_(directions) {
   const std::size_t count = directions.count();
   cosines_.resize(count);
   above_.resize(count);
@@ -16,21 +16,26 @@ Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
 // Neighbouring directions of one vertex make the fastest packets (bench/ray.cpp). The lists are
 // made without branches, which would be mispredicted: what does not belong is overwritten.
 void Hemisphere::trace(std::size_t vertex) {
-  origin_ = index_.ray_origin(vertex);
-  const std::size_t count = find_above(index_.normal(vertex));
-  for (std::size_t i = 0; i < count; ++i) {
-    rays_[i].origin = origin_;
-    rays_[i].direction = directions_[above_[i]];
-  }
+  const std::size_t count = aim(vertex);
   index_.engine().occluded({rays_.data(), count}, {occluded_.data(), count},
                            ray::Coherence::coherent);
-  rays_cast_ += count;
   blocked_count_ = visible_count_ = 0;
   for (std::size_t i = 0; i < count; ++i) {
     blocked_[blocked_count_] = visible_[visible_count_] = {above_[i], cosines_[above_[i]]};
     blocked_count_ += occluded_[i];
     visible_count_ += 1u - occluded_[i];
   }
+}
+
+std::size_t Hemisphere::aim(std::size_t vertex) {
+  const Vec3 origin = index_.ray_origin(vertex);
+  const std::size_t count = find_above(index_.normal(vertex));
+  for (std::size_t i = 0; i < count; ++i) {
+    rays_[i].origin = origin;
+    rays_[i].direction = directions_[above_[i]];
+  }
+  rays_cast_ += count;
+  return count;
 }
 
 std::size_t Hemisphere::find_above(const Vec3& normal) {
@@ -53,6 +58,13 @@ std::span<const ray::Hit> Hemisphere::hits() {
   }
   index_.engine().closest_hit({rays_.data(), blocked_count_}, hits_, ray::Coherence::coherent);
   rays_cast_ += blocked_count_;
+  return hits_;
+}
+
+std::span<const ray::Hit> Hemisphere::trace_closest(std::size_t vertex) {
+  const std::size_t count = aim(vertex);
+  hits_.resize(count);
+  index_.engine().closest_hit({rays_.data(), count}, hits_, ray::Coherence::coherent);
   return hits_;
 }
 

@@ -26,17 +26,23 @@ class Hemisphere {
   /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked().
   std::span<const ray::Hit> hits();
 
+  /// Closest hits in all directions above the vertex's horizon, kNoHit where nothing is hit.
+  std::span<const ray::Hit> trace_closest(std::size_t vertex);
+  /// Cosine of ray `i` of trace_closest.
+  float cosine(std::size_t i) const { return cosines_[above_[i]]; }
+
   /// Rays cast so far, of both kinds.
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
+  /// Makes the rays of the directions above the vertex's horizon; returns their number.
+  std::size_t aim(std::size_t vertex);
   /// Fills cosines_ of all directions and above_ with those above the horizon; returns their
   /// number.
   std::size_t find_above(const Vec3& normal);
 
   const SceneIndex& index_;
   const Directions& directions_;
-  Vec3 origin_;
   std::vector<float> cosines_;
   std::vector<std::uint32_t> above_;
   std::vector<ray::Ray> rays_;

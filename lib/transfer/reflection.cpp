@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -23,19 +24,49 @@ Vec3 channel_albedo(const Vec3& albedo, int channel_count) {
   return Vec3(0.2126f * albedo.x + 0.7152f * albedo.y + 0.0722f * albedo.z);
 }
 
-Reflection::Reflection(const SceneIndex& index, const Directions& directions, int channel_count,
-                       std::size_t hit_bytes)
+Reflection::Reflection(const SceneIndex& index, Directions directions, int channel_count,
+                       std::vector<float> blocked, std::size_t hit_bytes)
     : index_(index),
-      directions_(directions),
+      directions_(std::move(directions)),
       channel_count_(static_cast<std::size_t>(channel_count)),
+      blocked_(std::move(blocked)),
       blocks_(block_count(index.vertex_count(), kVertexBlock)),
       room_(static_cast<std::ptrdiff_t>(hit_bytes / sizeof(PackedHit))) {}
 
-void Reflection::pack(const Hemisphere& hemisphere, std::span<const ray::Hit> hits,
-                      std::vector<PackedHit>& packed) const {
+std::uint64_t Reflection::trace(Progress& progress) {
+  std::vector<std::uint64_t> rays(blocks_.size());
+  parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
+    if (room_ <= 0) return;
+    Block block;
+    rays[begin / kVertexBlock] = trace_block(begin, end, block);
+    block.hits.shrink_to_fit();
+    room_ -= static_cast<std::ptrdiff_t>(block.hits.size());
+    block.kept = true;
+    blocks_[begin / kVertexBlock] = std::move(block);
+    progress.advance(end - begin);
+  });
+  return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+}
+
+std::uint64_t Reflection::trace_block(std::size_t begin, std::size_t end, Block& block) const {
+  Hemisphere hemisphere(index_, directions_);
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t vertex = index_.vertex_order()[i];
+    const auto hits = hemisphere.trace_closest(vertex);
+    block.scales.push_back(pack(vertex, hemisphere, hits, block.hits));
+    block.ends.push_back(static_cast<std::uint32_t>(block.hits.size()));
+  }
+  return hemisphere.rays_cast();
+}
+
+float Reflection::pack(std::size_t vertex, const Hemisphere& hemisphere,
+                       std::span<const ray::Hit> hits, std::vector<PackedHit>& packed) const {
+  double cosine_sum = 0.0;  // of all blocked directions, those that end at a black back too
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const ray::Hit& hit = hits[i];
-    if (hit.triangle == ray::kNoHit || hit.back_face) continue;
+    if (hit.triangle == ray::kNoHit) continue;
+    cosine_sum += hemisphere.cosine(i);
+    if (hit.back_face) continue;
     const SceneIndex::Place at = index_.triangle_place(hit.triangle);
     const Vec3 albedo = channel_albedo(
         mesh::albedo_at_point(index_.scene(), index_.scene().primitives[at.primitive], at.local,
@@ -44,34 +75,21 @@ void Reflection::pack(const Hemisphere& hemisphere, std::span<const ray::Hit> hi
     packed.push_back({hit.triangle,
                       pack_unit(hit.u),
                       pack_unit(hit.v),
-                      pack_unit(hemisphere.blocked()[i].weight),
+                      pack_unit(hemisphere.cosine(i)),
                       {pack_unit(albedo.x), pack_unit(albedo.y), pack_unit(albedo.z)}});
   }
+  return cosine_sum > 0.0 ? static_cast<float>(blocked_[vertex] / cosine_sum) : 0.0f;
 }
 
-GatherTerm Reflection::unpack(const PackedHit& hit) const {
-  // Irradiance from reflected radiance albedo/pi · E, in a direction of weight 4 pi / count.
-  const float scale = 4.0f / static_cast<float>(directions_.count()) * hit.cosine / (kUnit * kUnit);
+// Irradiance from reflected radiance albedo/pi · E; `scale` is the solid angle of a direction.
+GatherTerm Reflection::unpack(const PackedHit& hit, float scale) const {
+  const float weight =
+      scale * std::numbers::inv_pi_v<float> * static_cast<float>(hit.cosine) / (kUnit * kUnit);
   const std::array<std::uint32_t, 3> corners = index_.triangle(hit.triangle);
   const float u = hit.u / kUnit, v = hit.v / kUnit;
   return {{corners[0], corners[1], corners[2]},
           {1.0f - u - v, u, v},
-          {scale * hit.albedo[0], scale * hit.albedo[1], scale * hit.albedo[2]}};
-}
-
-void Reflection::record(std::size_t block, Hemisphere& hemisphere) {
-  Block& mine = blocks_[block];
-  if (room_ <= 0) mine.kept = false;
-  if (!mine.kept) return;
-  pack(hemisphere, hemisphere.hits(), mine.hits);
-  mine.ends.push_back(static_cast<std::uint32_t>(mine.hits.size()));
-}
-
-void Reflection::finish_block(std::size_t block) {
-  Block& mine = blocks_[block];
-  if (!mine.kept) mine = {{}, {}, false};
-  mine.hits.shrink_to_fit();
-  room_ -= static_cast<std::ptrdiff_t>(mine.hits.size());
+          {weight * hit.albedo[0], weight * hit.albedo[1], weight * hit.albedo[2]}};
 }
 
 std::uint64_t Reflection::gather(const float* field, std::size_t columns, float* next) const {
@@ -84,29 +102,25 @@ std::uint64_t Reflection::gather(const float* field, std::size_t columns, float*
 
 std::uint64_t Reflection::gather_block(std::size_t begin, std::size_t end, const float* field,
                                        std::size_t columns, float* next) const {
-  const Block& block = blocks_[begin / kVertexBlock];
-  Hemisphere hemisphere(index_, directions_);
-  std::vector<PackedHit> traced;
+  const Block* block = &blocks_[begin / kVertexBlock];
+  Block traced;
+  std::uint64_t rays_cast = 0;
+  if (!block->kept) {
+    rays_cast = trace_block(begin, end, traced);
+    block = &traced;
+  }
   std::vector<GatherTerm> terms;
   for (std::size_t i = begin; i < end; ++i) {
-    const std::size_t vertex = index_.vertex_order()[i];
-    std::span<const PackedHit> hits;
-    if (block.kept) {
-      const std::size_t first = i == begin ? 0 : block.ends[i - begin - 1];
-      hits = {block.hits.data() + first, block.ends[i - begin] - first};
-    } else {
-      hemisphere.trace(vertex);
-      traced.clear();
-      pack(hemisphere, hemisphere.hits(), traced);
-      hits = traced;
-    }
+    const std::size_t first = i == begin ? 0 : block->ends[i - begin - 1];
     terms.clear();
-    for (const PackedHit& hit : hits) terms.push_back(unpack(hit));
-    float* row = next + vertex * channel_count_ * columns;
+    for (std::size_t h = first; h < block->ends[i - begin]; ++h) {
+      terms.push_back(unpack(block->hits[h], block->scales[i - begin]));
+    }
+    float* row = next + index_.vertex_order()[i] * channel_count_ * columns;
     std::fill_n(row, channel_count_ * columns, 0.0f);
     add_gathered(terms, field, channel_count_, columns, row);
   }
-  return hemisphere.rays_cast();
+  return rays_cast;
 }
 
 }  // namespace prt::transfer

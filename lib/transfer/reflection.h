@@ -1,5 +1,10 @@
-// Interreflection: what the surfaces that block a vertex's rays reflect to it. The hits of the
-// first pass are kept, packed, within a memory budget; those of other vertices are traced again.
+// Interreflection: what the surfaces around a vertex reflect to it. Radiance between surfaces
+// varies slowly beside the edges of the light, so this takes a smaller set of directions than
+// shadows do. Their hits are traced once and kept, packed, within a memory budget; those of other
+// vertices are traced again for every bounce.
+//
+// The small set sees a slightly other share of the hemisphere blocked than the shadow rays did.
+// Each vertex's sum is scaled to their share, so that blocked and reflected energy balance exactly.
 #pragma once
 
 #include <atomic>
@@ -7,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "transfer/hemisphere.h"
 #include "transfer/scene_index.h"
 
@@ -19,13 +25,12 @@ Vec3 channel_albedo(const Vec3& albedo, int channel_count);
 
 class Reflection {
  public:
-  Reflection(const SceneIndex& index, const Directions& directions, int channel_count,
-             std::size_t hit_bytes);
+  /// `blocked`: ∫ (1 - V) max(0, cos) of every vertex, as the shadow rays found it.
+  Reflection(const SceneIndex& index, Directions directions, int channel_count,
+             std::vector<float> blocked, std::size_t hit_bytes);
 
-  /// Traces and keeps the hits of the vertex last traced, while there is room. Vertices of a block
-  /// (number in vertex_order() / kVertexBlock) come in order, on one thread; finish_block ends it.
-  void record(std::size_t block, Hemisphere& hemisphere);
-  void finish_block(std::size_t block);
+  /// Traces all vertices and keeps their hits while there is room. Returns the number of rays cast.
+  std::uint64_t trace(Progress& progress);
 
   /// One bounce: next_v = ∫ reflected albedo/pi · field. Fields have columns floats a channel,
   /// channel after channel, a row a vertex. Returns the number of rays cast.
@@ -40,18 +45,23 @@ class Reflection {
   struct Block {
     std::vector<PackedHit> hits;
     std::vector<std::uint32_t> ends;  ///< of each vertex's hits
-    bool kept = true;                 ///< false: did not fit, is traced again
+    std::vector<float> scales;        ///< of each vertex's sum
+    bool kept = false;                ///< false: did not fit, is traced again
   };
 
-  void pack(const Hemisphere& hemisphere, std::span<const ray::Hit> hits,
-            std::vector<PackedHit>& packed) const;
-  GatherTerm unpack(const PackedHit& hit) const;
+  /// Traces the vertices [begin, end) of vertex_order(). Returns the number of rays cast.
+  std::uint64_t trace_block(std::size_t begin, std::size_t end, Block& block) const;
+  /// Appends a vertex's hits; returns the scale of its sum.
+  float pack(std::size_t vertex, const Hemisphere& hemisphere, std::span<const ray::Hit> hits,
+             std::vector<PackedHit>& packed) const;
+  GatherTerm unpack(const PackedHit& hit, float scale) const;
   std::uint64_t gather_block(std::size_t begin, std::size_t end, const float* field,
                              std::size_t columns, float* next) const;
 
   const SceneIndex& index_;
-  const Directions& directions_;
+  Directions directions_;
   std::size_t channel_count_;
+  std::vector<float> blocked_;
   std::vector<Block> blocks_;
   std::atomic<std::ptrdiff_t> room_;  ///< hits that still fit
 };

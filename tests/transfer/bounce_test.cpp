@@ -130,7 +130,7 @@ TEST(Bounce, MemoryBudgetsChangeNothing) {
   DiffuseOptions options{.ray_count = 256, .bounce_count = 3};
   DiffuseStats roomy, tight;
   const auto expected = compute_diffuse(scene, options, roomy);
-  options.hit_bytes = 20000;
+  options.hit_bytes = 0;
   options.bounce_bytes = 20000;
   const auto signal = compute_diffuse(scene, options, tight);
   EXPECT_EQ(signal.values, expected.values);
@@ -167,6 +167,7 @@ class PlainTransfer {
     std::vector<double> field(count * 75);
     std::vector<float> y(25);
     for (std::size_t v = 0; v < count; ++v) {
+      double blocked = std::numbers::pi;
       for (std::size_t d = 0; d < directions_.count(); ++d) {
         const Vec3d direction(directions_[d]);
         const double cosine = normals_[v].dot(direction);
@@ -178,9 +179,11 @@ class PlainTransfer {
           found[v].push_back(hit);
           continue;
         }
+        blocked -= hit.weight;
         sh::evaluate(5, directions_[d], y);
         for (std::size_t j = 0; j < 75; ++j) field[v * 75 + j] += hit.weight * y[j % 25];
       }
+      scale_to(blocked, found[v]);
     }
     std::vector<double> total = field;
     for (int b = 0; b < bounce_count; ++b) {
@@ -204,6 +207,12 @@ class PlainTransfer {
     double t = INFINITY, u = 0, v = 0, weight = 0;
     bool back_face = false;
   };
+
+  static void scale_to(double blocked, std::vector<Found>& hits) {
+    double sum = 0.0;
+    for (const Found& hit : hits) sum += hit.weight;
+    for (Found& hit : hits) hit.weight *= blocked / sum;
+  }
 
   Found closest(std::size_t vertex, const Vec3d& d, double weight) const {
     Found best;
@@ -246,8 +255,9 @@ TEST(Bounce, AgreesWithAPlainImplementation) {
   mesh::Scene scene = coloured_box(3);
   add(scene, box({-0.4f, -0.9f, -0.5f}, {0.3f, -0.1f, 0.2f}, 1), Vec3(0.9f, 0.6f, 0.3f));
   for (int bounces : {0, 1, 3}) {
-    const auto signal =
-        compute(scene, {.ray_count = 128, .bounce_count = bounces, .closed_form = false});
+    const auto signal = compute(
+        scene,
+        {.ray_count = 128, .bounce_count = bounces, .bounce_ray_count = 128, .closed_form = false});
     const std::vector<double> plain = PlainTransfer(scene, 128).run(bounces);
     ASSERT_EQ(signal.values.size(), plain.size());
     std::size_t different = 0;
