@@ -10,7 +10,7 @@ SIZE = ("--size", "512x512", "--background", "none", "--antialias", 1)
 
 
 class Quality(ToolTest):
-    def bake(self, source, environment, bounces, *import_options):
+    def bake(self, source, environment, bounces, samples, *import_options):
         """Bakes `source` and renders its reference, 5 bands, 256 clusters of 8 components."""
         self.mesh, self.transfer, self.baked, self.light, self.reference = (
             self.folder / name for name in
@@ -22,7 +22,7 @@ class Quality(ToolTest):
                   "--components", 8, "--method", "static")
         self.done("prt-light", environment, "-o", self.light, "--bands", 5)
         self.done("prt-render", self.mesh, "--reference", "--bounces", bounces, "--light",
-                  self.light, "--samples", 256, "-o", self.reference, *SIZE[:4])
+                  self.light, "--samples", samples, "-o", self.reference, *SIZE[:4])
 
     def draw(self, name, *options):
         path = self.folder / name
@@ -36,7 +36,7 @@ class Quality(ToolTest):
         return figures
 
     def test_bunny_against_the_path_tracer(self):
-        self.bake(BUNNY, WORLD / "sunset.exr", 2, "--base-color", "0.7,0.7,0.7")
+        self.bake(BUNNY, WORLD / "sunset.exr", 2, 1024, "--base-color", "0.7,0.7,0.7")
         uncompressed = self.draw("u.exr", "--transfer", self.transfer)
         compressed = self.draw("c.exr")
         clusters = self.draw("k.exr", "--draw", "clusters")
@@ -53,8 +53,8 @@ class Quality(ToolTest):
     def test_bounces_in_the_coloured_box(self):
         for bounces in (0, 1, 2, 10):
             with self.subTest(bounces=bounces):
-                self.bake(SOURCE / "data/colored_box.obj", WORLD / "courtyard.exr", bounces,
-                          "--max-edge", 0.02, "--crease-angle", 30)
+                self.bake(SOURCE / "data/colored_box.obj", WORLD / "courtyard.exr", bounces, 256,
+                          "--max-edge", 0.04)
                 uncompressed = self.draw("u.exr", "--transfer", self.transfer)
                 error = self.comparison(uncompressed, self.reference)["relative_rmse"]
                 print(bounces, "bounces:", error)
