@@ -11,8 +11,14 @@ namespace prt::gltf {
 
 namespace {
 
-constexpr std::pair<const char*, std::size_t> kTypes[] = {
-    {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+constexpr std::pair<const char*, int> kTypes[] = {
+    {"SCALAR", TINYGLTF_TYPE_SCALAR}, {"VEC2", TINYGLTF_TYPE_VEC2}, {"VEC3", TINYGLTF_TYPE_VEC3},
+    {"VEC4", TINYGLTF_TYPE_VEC4},     {"MAT2", TINYGLTF_TYPE_MAT2}, {"MAT3", TINYGLTF_TYPE_MAT3},
+    {"MAT4", TINYGLTF_TYPE_MAT4}};
+
+std::size_t component_count(int type) {
+  return static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<unsigned>(type)));
+}
 
 template <class T>
 T load(const std::byte* from) {
@@ -21,70 +27,74 @@ T load(const std::byte* from) {
   return value;
 }
 
-// glTF 2.0 §3.11: how normalised integers stand for floats.
-template <class T>
-float load_normalized(const std::byte* from) {
-  const float value =
-      static_cast<float>(load<T>(from)) / static_cast<float>(std::numeric_limits<T>::max());
-  return std::max(value, -1.0f);
-}
-
-float load_float(const std::byte* from, std::size_t component_type, bool normalized) {
+float load_float(const std::byte* from, int component_type) {
   switch (component_type) {
-    case kByte:
-      return normalized ? load_normalized<std::int8_t>(from) : load<std::int8_t>(from);
-    case kUnsignedByte:
-      return normalized ? load_normalized<std::uint8_t>(from) : load<std::uint8_t>(from);
-    case kShort:
-      return normalized ? load_normalized<std::int16_t>(from) : load<std::int16_t>(from);
-    case kUnsignedShort:
-      return normalized ? load_normalized<std::uint16_t>(from) : load<std::uint16_t>(from);
-    case kUnsignedInt:
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return load<std::int8_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return load<std::int16_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(from);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return static_cast<float>(load<std::uint32_t>(from));
     default:
       return load<float>(from);
   }
 }
 
-std::uint32_t load_unsigned(const std::byte* from, std::size_t component_type) {
+std::uint32_t load_unsigned(const std::byte* from, int component_type) {
   switch (component_type) {
-    case kUnsignedByte:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return load<std::uint8_t>(from);
-    case kUnsignedShort:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return load<std::uint16_t>(from);
     default:
       return load<std::uint32_t>(from);
   }
 }
 
-std::size_t component_type_of(const Json& accessor) {
-  return accessor.at("componentType").get<std::size_t>();
+// The number that stands for 1 in a normalised accessor.
+float one_of(int component_type) {
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return std::numeric_limits<std::int8_t>::max();
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return std::numeric_limits<std::uint8_t>::max();
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return std::numeric_limits<std::int16_t>::max();
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return std::numeric_limits<std::uint16_t>::max();
+    default:
+      return 1.0f;
+  }
 }
 
 // Copies `count` elements of `size` bytes out of a view.
-void copy_elements(const State& state, const Json& source, std::size_t size, std::size_t count,
-                   std::byte* to) {
-  const std::size_t index = source.at("bufferView").get<std::size_t>();
-  const auto bytes = state.view_bytes(index);
-  const Json& view = state.element("bufferViews", index);
-  const std::size_t stride = view.value("byteStride", size);
-  const std::byte* from = bytes.data() + source.value("byteOffset", std::size_t{0});
+void copy_elements(const Model& model, int view, std::size_t offset, std::size_t size,
+                   std::size_t count, std::byte* to) {
+  const std::size_t view_stride = model.bufferViews[static_cast<std::size_t>(view)].byteStride;
+  const std::size_t stride = view_stride > 0 ? view_stride : size;
+  const std::byte* from = model.view_bytes(view).data() + offset;
   for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * size, from + i * stride, size);
 }
 
-void apply_sparse(const State& state, const Json& accessor, std::size_t size, Bytes& elements) {
-  const Json& sparse = accessor.at("sparse");
-  const std::size_t count = sparse.at("count").get<std::size_t>();
-  const Json& index_source = sparse.at("indices");
-  const std::size_t type = component_type_of(index_source), width = component_bytes(type);
-  Bytes indices(count * width), values(count * size);
-  copy_elements(state, index_source, width, count, indices.data());
-  copy_elements(state, sparse.at("values"), size, count, values.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t target = load_unsigned(&indices[i * width], type);
+void apply_sparse(const Model& model, const tinygltf::Accessor& accessor, std::size_t size,
+                  Bytes& elements) {
+  const auto& [count, is_sparse, source, changed] = accessor.sparse;
+  const auto n = static_cast<std::size_t>(count);
+  const std::size_t width = component_bytes(static_cast<std::size_t>(source.componentType));
+  Bytes indices(n * width), values(n * size);
+  copy_elements(model, source.bufferView, static_cast<std::size_t>(source.byteOffset), width, n,
+                indices.data());
+  copy_elements(model, changed.bufferView, static_cast<std::size_t>(changed.byteOffset), size, n,
+                values.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t target = load_unsigned(&indices[i * width], source.componentType);
     if ((target + 1) * size > elements.size()) {
       throw_bad_input("sparse index past the accessor's end",
-                      {.file = state.file, .found = std::to_string(target)});
+                      {.file = model.state.file, .found = std::to_string(target)});
     }
     std::memcpy(&elements[target * size], &values[i * size], size);
   }
@@ -99,81 +109,84 @@ Bytes to_bytes(std::span<const T> values) {
 }  // namespace
 
 std::size_t component_bytes(std::size_t component_type) {
-  switch (component_type) {
-    case kByte:
-    case kUnsignedByte:
-      return 1;
-    case kShort:
-    case kUnsignedShort:
-      return 2;
-    case kUnsignedInt:
-    case kFloat:
-      return 4;
-    default:
-      return 0;
+  // tinygltf also knows integers and doubles, which glTF does not.
+  if (component_type > TINYGLTF_COMPONENT_TYPE_FLOAT ||
+      component_type == TINYGLTF_COMPONENT_TYPE_INT) {
+    return 0;
   }
+  const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<unsigned>(component_type));
+  return static_cast<std::size_t>(std::max(bytes, 0));
 }
 
-std::size_t components_of(const std::string& accessor_type) {
-  for (const auto& [name, count] : kTypes) {
-    if (accessor_type == name) return count;
+int type_code(const std::string& type) {
+  for (const auto& [name, code] : kTypes) {
+    if (type == name) return code;
   }
-  return 0;
+  return -1;
 }
 
-std::size_t element_bytes(const Json& accessor) {
-  const std::string type = accessor.at("type").get<std::string>();
-  const std::size_t component = component_bytes(component_type_of(accessor));
+std::size_t element_bytes(int component_type, int type) {
+  const std::size_t component = component_bytes(static_cast<std::size_t>(component_type));
   // Columns of matrices start at multiples of 4 bytes.
-  if (type == "MAT2" && component == 1) return 8;
-  if (type == "MAT3" && component < 4) return component == 1 ? 12 : 24;
-  return component * components_of(type);
+  if (type == TINYGLTF_TYPE_MAT2 && component == 1) return 8;
+  if (type == TINYGLTF_TYPE_MAT3 && component < 4) return component == 1 ? 12 : 24;
+  return component * component_count(type);
 }
 
-std::size_t accessor_count(const State& state, std::size_t accessor) {
-  return state.element("accessors", accessor).at("count").get<std::size_t>();
+const tinygltf::Accessor& accessor_of(const Model& model, int accessor) {
+  return model.accessors.at(static_cast<std::size_t>(accessor));
 }
 
-std::size_t accessor_components(const State& state, std::size_t accessor) {
-  return components_of(state.element("accessors", accessor).at("type").get<std::string>());
+std::size_t component_count(const tinygltf::Accessor& accessor) {
+  return component_count(accessor.type);
 }
 
-Bytes read_elements(const State& state, std::size_t index) {
-  const Json& accessor = state.element("accessors", index);
-  const std::size_t size = element_bytes(accessor), count = accessor_count(state, index);
-  Bytes elements(size * count);
-  if (accessor.contains("bufferView")) {
-    copy_elements(state, accessor, size, count, elements.data());
+Bytes read_elements(const Model& model, int index) {
+  const tinygltf::Accessor& accessor = accessor_of(model, index);
+  const std::size_t size = element_bytes(accessor.componentType, accessor.type);
+  Bytes elements(size * accessor.count);
+  if (accessor.bufferView >= 0) {
+    copy_elements(model, accessor.bufferView, accessor.byteOffset, size, accessor.count,
+                  elements.data());
   }
-  if (accessor.contains("sparse")) apply_sparse(state, accessor, size, elements);
+  if (accessor.sparse.isSparse) apply_sparse(model, accessor, size, elements);
   return elements;
 }
 
-std::vector<float> read_floats(const State& state, std::size_t index) {
-  const Json& accessor = state.element("accessors", index);
-  const std::size_t type = component_type_of(accessor), width = component_bytes(type);
-  const bool normalized = accessor.value("normalized", false);
-  const Bytes elements = read_elements(state, index);
+std::vector<float> read_components(const Model& model, int index) {
+  const int type = accessor_of(model, index).componentType;
+  const std::size_t width = component_bytes(static_cast<std::size_t>(type));
+  const Bytes elements = read_elements(model, index);
   std::vector<float> values(elements.size() / width);
-  if (type == kFloat) {
+  if (type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
     std::memcpy(values.data(), elements.data(), elements.size());
     return values;
   }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = load_float(&elements[i * width], type, normalized);
-  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = load_float(&elements[i * width], type);
   return values;
 }
 
-std::vector<std::uint32_t> read_unsigned(const State& state, std::size_t index) {
-  const std::size_t type = component_type_of(state.element("accessors", index));
-  if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
-    throw_bad_input("not unsigned integers", {.file = state.file,
+std::vector<float> read_floats(const Model& model, int index) {
+  std::vector<float> values = read_components(model, index);
+  const tinygltf::Accessor& accessor = accessor_of(model, index);
+  const float one = one_of(accessor.componentType);
+  if (!accessor.normalized || one == 1.0f) return values;
+  for (float& value : values) value = std::max(value / one, -1.0f);  // glTF 2.0 §3.11
+  return values;
+}
+
+std::vector<std::uint32_t> read_unsigned(const Model& model, int index) {
+  const int type = accessor_of(model, index).componentType;
+  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    throw_bad_input("not unsigned integers", {.file = model.state.file,
                                               .element = "accessor " + std::to_string(index),
                                               .found = "component type " + std::to_string(type)});
   }
-  const std::size_t width = component_bytes(type);
-  const Bytes elements = read_elements(state, index);
+  const std::size_t width = component_bytes(static_cast<std::size_t>(type));
+  const Bytes elements = read_elements(model, index);
   std::vector<std::uint32_t> values(elements.size() / width);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = load_unsigned(&elements[i * width], type);
@@ -202,12 +215,11 @@ std::size_t add_accessor(State& state, const NewAccessor& accessor, Bytes bytes)
   return accessors.size() - 1;
 }
 
-std::size_t add_floats(State& state, const char* type, std::span<const float> values,
-                       std::size_t target) {
+std::size_t add_floats(State& state, const char* type, std::span<const float> values, int target) {
   return add_accessor(state,
-                      {.component_type = kFloat,
+                      {.component_type = TINYGLTF_COMPONENT_TYPE_FLOAT,
                        .type = type,
-                       .count = values.size() / components_of(type),
+                       .count = values.size() / component_count(type_code(type)),
                        .target = target},
                       to_bytes(values));
 }
@@ -215,29 +227,28 @@ std::size_t add_floats(State& state, const char* type, std::span<const float> va
 std::size_t add_indices(State& state, std::span<const std::uint32_t> indices) {
   const std::uint32_t largest =
       indices.empty() ? 0 : *std::max_element(indices.begin(), indices.end());
-  NewAccessor accessor{.component_type = kUnsignedInt,
+  NewAccessor accessor{.component_type = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
                        .type = "SCALAR",
                        .count = indices.size(),
-                       .target = kIndices};
+                       .target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER};
   if (largest >= std::numeric_limits<std::uint16_t>::max()) {
     return add_accessor(state, accessor, to_bytes(indices));
   }
-  accessor.component_type = kUnsignedShort;
+  accessor.component_type = TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
   const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
   return add_accessor(state, accessor, to_bytes(std::span<const std::uint16_t>(narrow)));
 }
 
-void set_bounds(State& state, std::size_t index) {
-  const std::vector<float> values = read_floats(state, index);
-  const std::size_t components = accessor_components(state, index);
-  std::vector<float> low(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(components));
+void set_bounds(State& state, std::size_t index, std::span<const float> components) {
+  Json& accessor = state.root["accessors"][index];
+  const std::size_t n = component_count(type_code(accessor["type"].get<std::string>()));
+  std::vector<float> low(components.begin(), components.begin() + static_cast<std::ptrdiff_t>(n));
   std::vector<float> high = low;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    low[i % components] = std::min(low[i % components], values[i]);
-    high[i % components] = std::max(high[i % components], values[i]);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    low[i % n] = std::min(low[i % n], components[i]);
+    high[i % n] = std::max(high[i % n], components[i]);
   }
   // Doubles: a float written with a float's digits may read back as another double than the float.
-  Json& accessor = state.root["accessors"][index];
   accessor["min"] = std::vector<double>(low.begin(), low.end());
   accessor["max"] = std::vector<double>(high.begin(), high.end());
 }

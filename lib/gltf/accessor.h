@@ -6,47 +6,43 @@
 #include <span>
 #include <vector>
 
-#include "gltf/state.h"
+#include "gltf/model.h"
 
 namespace prt::gltf {
 
-/// glTF's component types.
-constexpr std::size_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
-                      kUnsignedInt = 5125, kFloat = 5126;
+std::size_t component_bytes(std::size_t component_type);  ///< 0: not one of glTF's
+int type_code(const std::string& type);                   ///< tinygltf's of "VEC3"; -1: unknown
+std::size_t element_bytes(int component_type, int type);  ///< of known ones
 
-std::size_t component_bytes(std::size_t component_type);      ///< 0: unknown
-std::size_t components_of(const std::string& accessor_type);  ///< 0: unknown
-std::size_t element_bytes(const Json& accessor);              ///< of a checked accessor
-
-std::size_t accessor_count(const State& state, std::size_t accessor);
-std::size_t accessor_components(const State& state, std::size_t accessor);
+const tinygltf::Accessor& accessor_of(const Model& model, int accessor);
+std::size_t component_count(const tinygltf::Accessor& accessor);  ///< of an element
 
 /// All elements, tightly packed, sparse changes applied, as they are stored.
-Bytes read_elements(const State& state, std::size_t accessor);
-/// The same as floats; integers are scaled when the accessor is normalised.
-std::vector<float> read_floats(const State& state, std::size_t accessor);
+Bytes read_elements(const Model& model, int accessor);
+/// The same as floats.
+std::vector<float> read_components(const Model& model, int accessor);
+/// The same, scaled where the accessor is normalised.
+std::vector<float> read_floats(const Model& model, int accessor);
 /// Unsigned integers of any width.
-std::vector<std::uint32_t> read_unsigned(const State& state, std::size_t accessor);
+std::vector<std::uint32_t> read_unsigned(const Model& model, int accessor);
 
 /// What a new accessor holds.
 struct NewAccessor {
-  std::size_t component_type;
+  int component_type;
   const char* type;
   std::size_t count;
   std::size_t stride = 0;  ///< of the buffer view; 0: tight
-  std::size_t target = 0;  ///< of the buffer view: kVertices, kIndices or none
+  int target = 0;          ///< of the buffer view; 0: none
 };
-constexpr std::size_t kVertices = 34962, kIndices = 34963;
 
 /// Appends a buffer, a buffer view and an accessor. Returns the accessor's number.
 std::size_t add_accessor(State& state, const NewAccessor& accessor, Bytes bytes);
 /// The same for floats: `values` holds count × components.
-std::size_t add_floats(State& state, const char* type, std::span<const float> values,
-                       std::size_t target);
+std::size_t add_floats(State& state, const char* type, std::span<const float> values, int target);
 std::size_t add_indices(State& state, std::span<const std::uint32_t> indices);
 /// A buffer and a view of it, for images.
 std::size_t add_view(State& state, Bytes bytes);
-/// Sets min and max, which glTF demands of positions.
-void set_bounds(State& state, std::size_t accessor);
+/// Sets min and max, which glTF demands of positions, to those of the accessor's components.
+void set_bounds(State& state, std::size_t accessor, std::span<const float> components);
 
 }  // namespace prt::gltf

@@ -17,6 +17,8 @@ namespace {
 // An accessor without a view is all zeros: nothing in the file bounds its count.
 constexpr std::size_t kMaxZeroCount = std::size_t{1} << 22;
 
+constexpr std::size_t kMaxTexcoordSets = 1 << 16;
+
 constexpr const char* kArrays[] = {"accessors", "animations", "buffers", "bufferViews", "cameras",
                                    "images",    "materials",  "meshes",  "nodes",       "samplers",
                                    "scenes",    "skins",      "textures"};
@@ -126,8 +128,17 @@ void check_sparse(const State& state, const Json& accessor, std::size_t size, st
   if (count > accessor["count"].get<std::size_t>()) {
     reject(where, "more sparse elements than elements", std::to_string(count));
   }
+  // tinygltf has ints for these
+  for (const std::size_t number : {count, optional_count(*indices, "byteOffset", 0, where),
+                                   optional_count(*values, "byteOffset", 0, where)}) {
+    if (number > std::numeric_limits<int>::max()) {
+      reject(where, "sparse data too large", std::to_string(number));
+    }
+  }
   const std::size_t type = required_count(*indices, "componentType", where);
-  if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
+  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
     reject(where, "bad type of sparse indices", std::to_string(type));
   }
   check_range(state, *indices, count, component_bytes(type), component_bytes(type), where);
@@ -140,12 +151,13 @@ void check_accessors(const State& state) {
     const Json& accessor = accessors[i];
     const Where where = state.where("accessor", i);
     const std::size_t count = required_count(accessor, "count", where);
-    const std::size_t component = component_bytes(required_count(accessor, "componentType", where));
+    const std::size_t component_type = required_count(accessor, "componentType", where);
+    const std::size_t component = component_bytes(component_type);
     const std::string type = optional_string(accessor, "type", where);
     if (component == 0) reject(where, "unknown component type");
-    if (components_of(type) == 0) reject(where, "unknown type", type);
+    if (type_code(type) < 0) reject(where, "unknown type", type);
     optional_bool(accessor, "normalized", where);
-    const std::size_t size = element_bytes(accessor);
+    const std::size_t size = element_bytes(static_cast<int>(component_type), type_code(type));
     if (accessor.contains("bufferView")) {
       check_range(state, accessor, count, size, component, where);
     } else if (count > kMaxZeroCount) {
@@ -154,6 +166,11 @@ void check_accessors(const State& state) {
     }
     check_sparse(state, accessor, size, component, where);
   }
+}
+
+// Of an accessor that check_accessors has passed.
+std::size_t accessor_count(const State& state, std::size_t accessor) {
+  return state.element("accessors", accessor).at("count").get<std::size_t>();
 }
 
 void check_attributes(const State& state, const Json& attributes, std::optional<std::size_t> count,
@@ -197,6 +214,27 @@ void check_meshes(const State& state) {
   }
 }
 
+void check_materials(const State& state) {
+  for (std::size_t i = 0; i < state.count("textures"); ++i) {
+    const Json& texture = state.element("textures", i);
+    optional_index(texture, "source", state.count("images"), state.where("texture", i));
+    optional_index(texture, "sampler", state.count("samplers"), state.where("texture", i));
+  }
+  for (std::size_t i = 0; i < state.count("materials"); ++i) {
+    const Where where = state.where("material", i);
+    const Json& material = state.element("materials", i);
+    optional_string(material, "name", where);
+    optional_bool(material, "doubleSided", where);
+    const Json* pbr = find(material, "pbrMetallicRoughness");
+    if (!pbr) continue;
+    check_numbers(*pbr, "baseColorFactor", 4, where);
+    if (const Json* info = find(*pbr, "baseColorTexture")) {
+      required_index(*info, "index", state.count("textures"), where);
+      optional_index(*info, "texCoord", kMaxTexcoordSets, where);
+    }
+  }
+}
+
 void check_images(const State& state) {
   const Json& images = array_of(state.root, "images");
   for (std::size_t i = 0; i < images.size(); ++i) {
@@ -206,17 +244,15 @@ void check_images(const State& state) {
 
 // Nodes may share a mesh and primitives their accessors: a small file can describe a huge scene.
 void check_size(const State& state) {
+  const Model model = read_model(state);
   std::size_t total = 0;
-  for (const PrimitiveUse& use : list_primitives(state)) {
-    const Json& primitive = primitive_of(state, use);
-    std::vector<const Json*> accessors;
-    for (const auto& [name, accessor] : primitive.at("attributes").items()) {
-      accessors.push_back(&accessor);
-    }
-    if (const Json* indices = find(primitive, "indices")) accessors.push_back(indices);
-    for (const Json* accessor : accessors) {
-      total = checked_add(total, accessor_count(state, accessor->get<std::size_t>()));
-    }
+  for (const PrimitiveUse& use : list_primitives(model)) {
+    const tinygltf::Primitive& primitive = primitive_of(model, use);
+    const auto add = [&](int accessor) {
+      total = checked_add(total, accessor_of(model, accessor).count);
+    };
+    for (const auto& [name, accessor] : primitive.attributes) add(accessor);
+    if (primitive.indices >= 0) add(primitive.indices);
     if (total > state.limits.max_element_count) {
       reject({state.file, "scene"}, "too many vertices and indices", fmt::format("{}", total),
              fmt::format("at most {}", state.limits.max_element_count));
@@ -232,6 +268,7 @@ void check_document(const State& state) {
   check_views(state);
   check_accessors(state);
   check_meshes(state);
+  check_materials(state);
   check_images(state);
   check_nodes(state);
   check_size(state);

@@ -7,10 +7,10 @@
 
 namespace prt::gltf {
 
-/// Throws Error (bad_input) naming the element.
+/// Throws Error (bad_input) naming the element. Only a document that passes is shown to tinygltf.
 void check_document(const State& state);
 
-/// The node graph alone: children in range, one parent at most, no cycle, depth.
+/// The node graph alone: transforms, children in range, one parent at most, no cycle, depth.
 void check_nodes(const State& state);
 
 }  // namespace prt::gltf

@@ -38,6 +38,10 @@ void check_nodes(const State& state) {
     const Where where = state.where("node", i);
     const Json& node = state.element("nodes", i);
     optional_index(node, "mesh", state.count("meshes"), where);
+    check_numbers(node, "matrix", 16, where);
+    check_numbers(node, "rotation", 4, where);
+    check_numbers(node, "scale", 3, where);
+    check_numbers(node, "translation", 3, where);
     for (const std::size_t child : read_nodes(state, node, "children", where)) {
       if (parent[child] != kNone) {
         throw_bad_input("a node with two parents",

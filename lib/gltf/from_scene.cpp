@@ -2,7 +2,6 @@
 #include "gltf/accessor.h"
 #include "gltf/geometry.h"
 #include "gltf/png.h"
-#include "gltf/state.h"
 
 namespace prt::gltf {
 
@@ -11,11 +10,11 @@ namespace {
 int wrap_code(mesh::Wrap wrap) {
   switch (wrap) {
     case mesh::Wrap::clamp:
-      return 33071;
+      return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     case mesh::Wrap::mirror:
-      return 33648;
+      return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
     default:
-      return 10497;
+      return TINYGLTF_TEXTURE_WRAP_REPEAT;
   }
 }
 

@@ -9,19 +9,15 @@ namespace prt::gltf {
 
 namespace {
 
-std::optional<std::size_t> attribute(const State& state, const Json& primitive, const char* name,
-                                     const Where& where) {
-  return optional_index(primitive.at("attributes"), name, state.count("accessors"), where);
-}
-
 // An attribute of the given number of components (COLOR_0 may have 3 or 4) as vectors.
 template <class Vec>
-std::vector<Vec> read_vectors(const State& state, const Json& primitive, const char* name,
-                              const Where& where) {
+std::vector<Vec> read_vectors(const Model& model, const tinygltf::Primitive& primitive,
+                              const char* name, const Where& where) {
   std::vector<Vec> vectors;
-  const auto accessor = attribute(state, primitive, name, where);
-  if (!accessor) return vectors;
-  const std::size_t components = accessor_components(state, *accessor);
+  const auto found = primitive.attributes.find(name);
+  if (found == primitive.attributes.end()) return vectors;
+  const tinygltf::Accessor& accessor = accessor_of(model, found->second);
+  const std::size_t components = component_count(accessor);
   const bool color_without_alpha = std::string_view(name) == "COLOR_0" && components == 3;
   if (components != Vec::dimensions() && !color_without_alpha) {
     throw_bad_input(fmt::format("{} of a wrong type", name),
@@ -30,8 +26,8 @@ std::vector<Vec> read_vectors(const State& state, const Json& primitive, const c
                      .found = fmt::format("{} components", components),
                      .expected = fmt::format("{}", Vec::dimensions())});
   }
-  const std::vector<float> values = read_floats(state, *accessor);
-  vectors.assign(accessor_count(state, *accessor), Vec(1.0f));
+  const std::vector<float> values = read_floats(model, found->second);
+  vectors.assign(accessor.count, Vec(1.0f));
   for (std::size_t i = 0; i < values.size(); ++i) {
     vectors[i / components][static_cast<int>(i % components)] = values[i];
   }
@@ -39,12 +35,11 @@ std::vector<Vec> read_vectors(const State& state, const Json& primitive, const c
 }
 
 // Corners 0, 1, 2, … when the primitive has no indices.
-std::vector<std::uint32_t> read_corners(const State& state, const Json& primitive,
+std::vector<std::uint32_t> read_corners(const Model& model, const tinygltf::Primitive& primitive,
                                         std::size_t vertex_count, const Where& where) {
   std::vector<std::uint32_t> corners;
-  const auto accessor = optional_index(primitive, "indices", state.count("accessors"), where);
-  if (accessor) {
-    corners = read_unsigned(state, *accessor);
+  if (primitive.indices >= 0) {
+    corners = read_unsigned(model, primitive.indices);
   } else {
     for (std::uint32_t i = 0; i < vertex_count; ++i) corners.push_back(i);
   }
@@ -59,8 +54,8 @@ std::vector<std::uint32_t> read_corners(const State& state, const Json& primitiv
   return corners;
 }
 
-std::vector<std::uint32_t> triangulate(std::vector<std::uint32_t> corners, std::size_t mode) {
-  if (mode == kTriangles) {
+std::vector<std::uint32_t> triangulate(std::vector<std::uint32_t> corners, int mode) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
     corners.resize(corners.size() / 3 * 3);
     return corners;
   }
@@ -68,8 +63,9 @@ std::vector<std::uint32_t> triangulate(std::vector<std::uint32_t> corners, std::
   for (std::size_t i = 2; i < corners.size(); ++i) {
     const std::size_t odd = i % 2;  // strips turn every other triangle round
     const std::array<std::uint32_t, 3> triangle =
-        mode == kTriangleStrip ? std::array{corners[i - 2], corners[i - 1 + odd], corners[i - odd]}
-                               : std::array{corners[i - 1], corners[i], corners[0]};
+        mode == TINYGLTF_MODE_TRIANGLE_STRIP
+            ? std::array{corners[i - 2], corners[i - 1 + odd], corners[i - odd]}
+            : std::array{corners[i - 1], corners[i], corners[0]};
     triangles.insert(triangles.end(), triangle.begin(), triangle.end());
   }
   return triangles;
@@ -80,23 +76,25 @@ void write_vectors(State& state, Json& primitive, const char* name, const char* 
                    const std::vector<Vec>& vectors) {
   if (vectors.empty()) return;
   const std::span<const float> values(&vectors[0].x, vectors.size() * Vec::dimensions());
-  make_object(primitive, "attributes")[name] = add_floats(state, type, values, kVertices);
+  make_object(primitive, "attributes")[name] =
+      add_floats(state, type, values, TINYGLTF_TARGET_ARRAY_BUFFER);
 }
 
 }  // namespace
 
-mesh::TriangleMesh read_geometry(const State& state, const Json& primitive, const Where& where) {
+mesh::TriangleMesh read_geometry(const Model& model, const tinygltf::Primitive& primitive,
+                                 const Where& where) {
   mesh::TriangleMesh mesh;
-  mesh.positions = read_vectors<Vec3>(state, primitive, "POSITION", where);
-  mesh.normals = read_vectors<Vec3>(state, primitive, "NORMAL", where);
-  mesh.tangents = read_vectors<Vec4>(state, primitive, "TANGENT", where);
-  mesh.texcoords = read_vectors<Vec2>(state, primitive, "TEXCOORD_0", where);
-  mesh.colors = read_vectors<Vec4>(state, primitive, "COLOR_0", where);
+  mesh.positions = read_vectors<Vec3>(model, primitive, "POSITION", where);
+  mesh.normals = read_vectors<Vec3>(model, primitive, "NORMAL", where);
+  mesh.tangents = read_vectors<Vec4>(model, primitive, "TANGENT", where);
+  mesh.texcoords = read_vectors<Vec2>(model, primitive, "TEXCOORD_0", where);
+  mesh.colors = read_vectors<Vec4>(model, primitive, "COLOR_0", where);
   if (mesh.positions.empty()) {
     throw_bad_input("no positions", {.file = where.file, .element = where.element});
   }
-  mesh.indices = triangulate(read_corners(state, primitive, mesh.vertex_count(), where),
-                             primitive_mode(state, primitive));
+  mesh.indices =
+      triangulate(read_corners(model, primitive, mesh.vertex_count(), where), primitive.mode);
   return mesh;
 }
 
@@ -107,7 +105,8 @@ void write_geometry(State& state, Json& primitive, const mesh::TriangleMesh& mes
   write_vectors(state, primitive, "TEXCOORD_0", "VEC2", mesh.texcoords);
   write_vectors(state, primitive, "COLOR_0", "VEC4", mesh.colors);
   primitive["indices"] = add_indices(state, mesh.indices);
-  set_bounds(state, primitive["attributes"]["POSITION"].get<std::size_t>());
+  set_bounds(state, primitive["attributes"]["POSITION"].get<std::size_t>(),
+             {&mesh.positions[0].x, 3 * mesh.positions.size()});
 }
 
 }  // namespace prt::gltf

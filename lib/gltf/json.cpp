@@ -71,24 +71,19 @@ std::size_t required_index(const Json& object, const char* key, std::size_t limi
   return index;
 }
 
-bool read_numbers(const Json& object, const char* key, std::size_t count, float* numbers,
-                  const Where& where) {
+void check_numbers(const Json& object, const char* key, std::size_t count, const Where& where) {
   const Json* values = find(object, key);
-  if (!values) return false;
+  if (!values) return;
   const std::string expected = fmt::format("{} finite numbers", count);
   if (!values->is_array() || values->size() != count) {
     reject(key, where, values->type_name(), expected);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const Json& value = (*values)[i];
+  for (const Json& value : *values) {
     if (!value.is_number()) reject(key, where, value.type_name(), expected);
-    const double number = value.get<double>();
-    if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
-      reject(key, where, std::to_string(number), expected);
+    if (!(std::abs(value.get<double>()) <= std::numeric_limits<float>::max())) {
+      reject(key, where, value.dump(), expected);
     }
-    numbers[i] = static_cast<float>(number);
   }
-  return true;
 }
 
 const Json& array_of(const Json& root, const char* name) {

@@ -29,9 +29,8 @@ std::optional<std::size_t> optional_index(const Json& object, const char* key, s
                                           const Where& where);
 std::size_t required_index(const Json& object, const char* key, std::size_t limit,
                            const Where& where);
-/// An array of exactly `count` finite numbers; false when absent.
-bool read_numbers(const Json& object, const char* key, std::size_t count, float* numbers,
-                  const Where& where);
+/// The field, if there, is an array of exactly `count` numbers that are finite floats.
+void check_numbers(const Json& object, const char* key, std::size_t count, const Where& where);
 
 /// Top-level array of that name, empty when absent.
 const Json& array_of(const Json& root, const char* name);

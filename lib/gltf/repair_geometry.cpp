@@ -37,40 +37,56 @@ void give_every_node_a_mesh(State& state) {
   }
 }
 
+std::vector<float> gather_components(const Model& model, int index,
+                                     const std::vector<std::uint32_t>& source) {
+  const std::vector<float> components = read_components(model, index);
+  const std::size_t n = component_count(accessor_of(model, index));
+  std::vector<float> gathered;
+  gathered.reserve(source.size() * n);
+  for (const std::uint32_t i : source) {
+    gathered.insert(gathered.end(), &components[i * n], &components[i * n] + n);
+  }
+  return gathered;
+}
+
 // Rearranges an accessor's elements into a new one of the same type.
-std::size_t gather_accessor(State& state, std::size_t index,
+std::size_t gather_accessor(State& state, const Model& model, int index,
                             const std::vector<std::uint32_t>& source) {
-  Json accessor = state.element("accessors", index);
-  const std::size_t size = element_bytes(accessor), stride = (size + 3) / 4 * 4;
-  const Bytes elements = read_elements(state, index);
+  const tinygltf::Accessor& from = accessor_of(model, index);
+  const std::size_t size = element_bytes(from.componentType, from.type);
+  const std::size_t stride = (size + 3) / 4 * 4;
+  const Bytes elements = read_elements(model, index);
   Bytes gathered(source.size() * stride);
   for (std::size_t i = 0; i < source.size(); ++i) {
     std::memcpy(&gathered[i * stride], &elements[source[i] * size], size);
   }
+  Json accessor = state.element("accessors", static_cast<std::size_t>(index));
   const std::string type = accessor["type"].get<std::string>();
   const std::size_t added = add_accessor(state,
-                                         {.component_type = accessor["componentType"],
+                                         {.component_type = from.componentType,
                                           .type = type.c_str(),
                                           .count = source.size(),
                                           .stride = stride,
-                                          .target = kVertices},
+                                          .target = TINYGLTF_TARGET_ARRAY_BUFFER},
                                          std::move(gathered));
   accessor.erase("sparse");
   accessor.erase("byteOffset");
   for (const auto& [key, value] : state.element("accessors", added).items()) accessor[key] = value;
+  const bool bounded = accessor.contains("min") || accessor.contains("max");
   state.root["accessors"][added] = std::move(accessor);
+  if (bounded) set_bounds(state, added, gather_components(model, index, source));
   return added;
 }
 
 // Attributes that a TriangleMesh does not carry, moved along or, without `source`, dropped.
-void carry_other_attributes(State& state, Json& attributes,
+void carry_other_attributes(State& state, const Model& model, Json& attributes,
                             const std::vector<std::uint32_t>& source, const Where& where) {
   Json carried = Json::object();
   for (const auto& [name, accessor] : attributes.items()) {
     if (is_interpolated(name)) {
       carried[name] = accessor;
     } else if (!source.empty()) {
-      carried[name] = gather_accessor(state, accessor.get<std::size_t>(), source);
+      carried[name] = gather_accessor(state, model, accessor.get<int>(), source);
     } else {
       log::warning("{}: {}: {} cannot be interpolated, dropped", where.file, where.element, name);
     }
@@ -78,8 +94,8 @@ void carry_other_attributes(State& state, Json& attributes,
   attributes = std::move(carried);
 }
 
-void carry_targets(State& state, Json& primitive, const std::vector<std::uint32_t>& source,
-                   const Where& where) {
+void carry_targets(State& state, const Model& model, Json& primitive,
+                   const std::vector<std::uint32_t>& source, const Where& where) {
   if (!primitive.contains("targets")) return;
   if (source.empty()) {
     log::warning("{}: {}: morph targets cannot be refined, dropped", where.file, where.element);
@@ -87,27 +103,27 @@ void carry_targets(State& state, Json& primitive, const std::vector<std::uint32_
     return;
   }
   for (Json& target : primitive["targets"]) {
-    for (auto& [name, accessor] : target.items()) {
-      const std::size_t moved = gather_accessor(state, accessor.get<std::size_t>(), source);
-      if (name == "POSITION") set_bounds(state, moved);
-      accessor = moved;
+    for (Json& accessor : target) {
+      accessor = gather_accessor(state, model, accessor.get<int>(), source);
     }
   }
 }
 
 class PrimitiveRepair {
  public:
-  PrimitiveRepair(State& state, const PrimitiveUse& use, const ImportOptions& options)
+  PrimitiveRepair(State& state, const Model& model, const PrimitiveUse& use,
+                  const ImportOptions& options)
       : state_(state),
+        model_(model),
         use_(use),
         options_(options.prepare),
-        where_{state.file, fmt::format("mesh {}: primitive {}", use.mesh, use.primitive)} {}
+        where_(where_of(model, use)) {}
 
   ImportedMesh run() {
-    Json& primitive = primitive_of(state_, use_);
-    mesh::TriangleMesh mesh = read_geometry(state_, primitive, where_);
+    const tinygltf::Primitive& before = primitive_of(model_, use_);
+    mesh::TriangleMesh mesh = read_geometry(model_, before, where_);
     // Vertices are merged only where there are no indices that say which ones are the same.
-    options_.repair.weld = !primitive.contains("indices") && !has_other_data(primitive);
+    options_.repair.weld = before.indices < 0 && !has_other_data(before);
     const bool had_tangents = !mesh.tangents.empty();
     const std::size_t triangle_count = mesh.triangle_count(), vertices = mesh.vertex_count();
     const std::vector<Vec3> normals = mesh.normals;
@@ -117,17 +133,18 @@ class PrimitiveRepair {
     const bool same = mesh.triangle_count() == triangle_count && mesh.vertex_count() == vertices &&
                       mesh.normals == normals;
     if (options_.max_edge > 0.0f) {
-      const std::size_t before = mesh.vertex_count();
+      const std::size_t repaired = mesh.vertex_count();
       mesh::tessellate(mesh, options_.max_edge, options_.max_triangles, use_.world_from_local);
-      if (mesh.vertex_count() != before) source.clear();
+      if (mesh.vertex_count() != repaired) source.clear();
     }
     imported.vertex_count = mesh.vertex_count();
     imported.triangle_count = mesh.triangle_count();
-    if (same && !source.empty() && is_ready(primitive)) return imported;
+    if (same && !source.empty() && is_ready(before)) return imported;
     if (!had_tangents) mesh.tangents.clear();
-    primitive["mode"] = kTriangles;
-    carry_other_attributes(state_, primitive["attributes"], source, where_);
-    carry_targets(state_, primitive, source, where_);
+    Json& primitive = primitive_of(state_, use_);
+    primitive["mode"] = TINYGLTF_MODE_TRIANGLES;
+    carry_other_attributes(state_, model_, primitive["attributes"], source, where_);
+    carry_targets(state_, model_, primitive, source, where_);
     write_geometry(state_, primitive, mesh);
     changed_ = true;
     return imported;
@@ -136,32 +153,23 @@ class PrimitiveRepair {
   bool changed() const { return changed_; }
 
  private:
-  static bool has_other_data(const Json& primitive) {
-    if (primitive.contains("targets")) return true;
-    for (const auto& [name, accessor] : primitive.at("attributes").items()) {
-      if (!is_interpolated(name)) return true;
-    }
-    return false;
+  static bool has_other_data(const tinygltf::Primitive& primitive) {
+    return !primitive.targets.empty() ||
+           std::any_of(primitive.attributes.begin(), primitive.attributes.end(),
+                       [](const auto& attribute) { return !is_interpolated(attribute.first); });
   }
 
-  bool is_ready(const Json& primitive) const {
-    return primitive.contains("indices") && primitive_mode(state_, primitive) == kTriangles;
+  static bool is_ready(const tinygltf::Primitive& primitive) {
+    return primitive.indices >= 0 && primitive.mode == TINYGLTF_MODE_TRIANGLES;
   }
 
   State& state_;
+  const Model& model_;
   PrimitiveUse use_;
   mesh::PrepareOptions options_;
   Where where_;
   bool changed_ = false;
 };
-
-std::string name_of(const State& state, const PrimitiveUse& use) {
-  for (const auto& [array, index] : {std::pair("nodes", use.node), std::pair("meshes", use.mesh)}) {
-    std::string name = optional_string(state.element(array, index), "name", {state.file, array});
-    if (!name.empty()) return name;
-  }
-  return fmt::format("mesh {}", use.mesh);
-}
 
 // glTF wants at least one primitive in a mesh: a node whose mesh has none left loses it.
 void drop_primitives(State& state, const std::set<std::pair<std::size_t, std::size_t>>& dead) {
@@ -197,16 +205,17 @@ void color_bare_primitives(State& state, const std::vector<PrimitiveUse>& uses, 
 
 std::vector<ImportedMesh> repair_geometry(State& state, const ImportOptions& options) {
   give_every_node_a_mesh(state);
-  const std::vector<PrimitiveUse> uses = list_primitives(state);
+  const Model model = read_model(state);
+  const std::vector<PrimitiveUse> uses = list_primitives(model);
   if (options.base_color) color_bare_primitives(state, uses, *options.base_color);
   std::vector<ImportedMesh> meshes;
   std::set<std::pair<std::size_t, std::size_t>> dead;
   bool changed = false;
   for (const PrimitiveUse& use : uses) {
-    PrimitiveRepair repair(state, use, options);
+    PrimitiveRepair repair(state, model, use, options);
     ImportedMesh imported = repair.run();
     changed |= repair.changed();
-    imported.name = name_of(state, use);
+    imported.name = name_of(model, use);
     if (imported.triangle_count > 0) {
       meshes.push_back(std::move(imported));
       continue;

@@ -7,17 +7,17 @@
 #include "core/log.h"
 #include "gltf/accessor.h"
 #include "gltf/geometry.h"
-#include "gltf/state.h"
+#include "gltf/model.h"
 
 namespace prt::gltf {
 
 namespace {
 
-mesh::Wrap read_wrap(const Json& sampler, const char* key, const Where& where) {
-  switch (optional_count(sampler, key, 10497, where)) {
-    case 33071:
+mesh::Wrap read_wrap(int code) {
+  switch (code) {
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
       return mesh::Wrap::clamp;
-    case 33648:
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return mesh::Wrap::mirror;
     default:
       return mesh::Wrap::repeat;
@@ -26,68 +26,64 @@ mesh::Wrap read_wrap(const Json& sampler, const char* key, const Where& where) {
 
 class MaterialReader {
  public:
-  MaterialReader(const State& state, mesh::Scene& scene)
-      : state_(state), scene_(scene), image_of_source_(state.count("images"), -1) {}
+  MaterialReader(const Model& model, mesh::Scene& scene)
+      : model_(model), scene_(scene), image_of_source_(model.state.count("images"), -1) {}
 
   void read_all() {
-    for (std::size_t i = 0; i < state_.count("materials"); ++i) {
-      scene_.materials.push_back(read(i));
-    }
+    for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(read(i));
   }
 
  private:
   mesh::Material read(std::size_t index) {
-    const Where where = state_.where("material", index);
-    const Json& json = state_.element("materials", index);
+    const tinygltf::Material& from = model_.materials[index];
+    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
     mesh::Material material;
-    material.name = optional_string(json, "name", where);
-    material.double_sided = optional_bool(json, "doubleSided", where);
-    if (const Json* pbr = find(json, "pbrMetallicRoughness")) {
-      read_numbers(*pbr, "baseColorFactor", 4, &material.base_color.x, where);
-      if (const Json* texture = find(*pbr, "baseColorTexture")) {
-        read_texture(*texture, material, where);
-      }
+    material.name = from.name;
+    material.double_sided = from.doubleSided;
+    std::copy(pbr.baseColorFactor.begin(), pbr.baseColorFactor.end(), &material.base_color.x);
+    if (pbr.baseColorTexture.index >= 0) {
+      read_texture(pbr.baseColorTexture, material, model_.where("material", index));
     }
     return material;
   }
 
-  void read_texture(const Json& info, mesh::Material& material, const Where& where) {
-    const Json& texture =
-        state_.element("textures", required_index(info, "index", state_.count("textures"), where));
-    if (optional_count(info, "texCoord", 0, where) != 0) {
+  void read_texture(const tinygltf::TextureInfo& info, mesh::Material& material,
+                    const Where& where) {
+    const auto& texture = model_.textures[static_cast<std::size_t>(info.index)];
+    if (info.texCoord != 0) {
       log::warning("{}: {}: base colour texture on another set than TEXCOORD_0, ignored",
-                   state_.file, where.element);
+                   where.file, where.element);
       return;
     }
-    const Json* extensions = find(info, "extensions");
-    if (extensions && find(*extensions, "KHR_texture_transform")) {
-      log::warning("{}: {}: KHR_texture_transform ignored", state_.file, where.element);
+    if (info.extensions.contains("KHR_texture_transform")) {
+      log::warning("{}: {}: KHR_texture_transform ignored", where.file, where.element);
     }
-    const auto source = optional_index(texture, "source", state_.count("images"), where);
-    if (!source) {
-      log::warning("{}: {}: base colour texture in a format of an extension, ignored", state_.file,
+    if (texture.source < 0) {
+      log::warning("{}: {}: base colour texture in a format of an extension, ignored", where.file,
                    where.element);
       return;
     }
-    material.base_color_image = image_number(*source);
-    if (const auto sampler = optional_index(texture, "sampler", state_.count("samplers"), where)) {
-      material.wrap_s = read_wrap(state_.element("samplers", *sampler), "wrapS", where);
-      material.wrap_t = read_wrap(state_.element("samplers", *sampler), "wrapT", where);
+    material.base_color_image = image_number(static_cast<std::size_t>(texture.source));
+    if (texture.sampler >= 0) {
+      const auto& sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
+      material.wrap_s = read_wrap(sampler.wrapS);
+      material.wrap_t = read_wrap(sampler.wrapT);
     }
   }
 
   int image_number(std::size_t source) {
     int& number = image_of_source_[source];
     if (number >= 0) return number;
-    const auto view = state_.element("images", source).at("bufferView").get<std::size_t>();
+    const State& state = model_.state;
+    const int view = state.element("images", source).at("bufferView").get<int>();
     number = static_cast<int>(scene_.images.size());
-    scene_.images.push_back(image::read_image(state_.view_bytes(view),
-                                              fmt::format("{}: image {}", state_.file, source),
-                                              state_.limits.max_image_pixels));
+    scene_.images.push_back(image::read_image(model_.view_bytes(view),
+                                              fmt::format("{}: image {}", state.file, source),
+                                              state.limits.max_image_pixels));
     return number;
   }
 
-  const State& state_;
+  const Model& model_;
   mesh::Scene& scene_;
   std::vector<int> image_of_source_;
 };
@@ -115,16 +111,15 @@ void move_to_world(mesh::TriangleMesh& mesh, const Matrix4& world_from_local, co
   }
 }
 
-void check_ready(const State& state, const PrimitiveUse& use, const mesh::TriangleMesh& mesh,
+void check_ready(const tinygltf::Primitive& primitive, const mesh::TriangleMesh& mesh,
                  const Where& where) {
-  const Json& primitive = primitive_of(state, use);
   const auto reject = [&](const char* what) {
     throw_bad_input(what, {.file = where.file,
                            .element = where.element,
                            .advice = "Pass the file through prt-import first."});
   };
-  if (primitive_mode(state, primitive) != kTriangles) reject("a strip or fan of triangles");
-  if (!primitive.contains("indices")) reject("triangles without indices");
+  if (primitive.mode != TINYGLTF_MODE_TRIANGLES) reject("a strip or fan of triangles");
+  if (primitive.indices < 0) reject("triangles without indices");
   if (mesh.normals.empty()) reject("a mesh without normals");
   for (const Vec3& p : mesh.positions) {
     if (!is_finite(p)) reject("a position that is not finite");
@@ -134,22 +129,14 @@ void check_ready(const State& state, const PrimitiveUse& use, const mesh::Triang
   }
 }
 
-std::string name_of(const State& state, const PrimitiveUse& use) {
-  for (const auto& [array, index] : {std::pair("nodes", use.node), std::pair("meshes", use.mesh)}) {
-    std::string name = optional_string(state.element(array, index), "name", {state.file, array});
-    if (!name.empty()) return name;
-  }
-  return fmt::format("mesh {}", use.mesh);
-}
-
 }  // namespace
 
 mesh::Scene Document::scene() const {
+  const Model model = read_model(*state_);
   mesh::Scene scene;
-  std::vector<bool> seen(state_->count("meshes"));
+  std::vector<bool> seen(model.meshes.size());
   std::size_t node_before = static_cast<std::size_t>(-1);
-  for (const PrimitiveUse& use : list_primitives(*state_)) {
-    const Where where{state_->file, fmt::format("mesh {}: primitive {}", use.mesh, use.primitive)};
+  for (const PrimitiveUse& use : list_primitives(model)) {
     if (use.node != node_before && seen[use.mesh]) {
       throw_bad_input("a mesh used by two nodes",
                       {.file = state_->file,
@@ -158,14 +145,14 @@ mesh::Scene Document::scene() const {
     }
     node_before = use.node;
     seen[use.mesh] = true;
+    const Where where = where_of(model, use);
+    const tinygltf::Primitive& from = primitive_of(model, use);
     mesh::Primitive primitive;
-    primitive.name = name_of(*state_, use);
-    primitive.mesh = read_geometry(*state_, primitive_of(*state_, use), where);
-    check_ready(*state_, use, primitive.mesh, where);
+    primitive.name = name_of(model, use);
+    primitive.mesh = read_geometry(model, from, where);
+    check_ready(from, primitive.mesh, where);
     move_to_world(primitive.mesh, use.world_from_local, where);
-    const auto material =
-        optional_index(primitive_of(*state_, use), "material", state_->count("materials"), where);
-    primitive.material = material ? static_cast<int>(*material) : -1;
+    primitive.material = from.material;
     primitive.mesh_index = static_cast<int>(use.mesh);
     primitive.primitive_index = static_cast<int>(use.primitive);
     scene.primitives.push_back(std::move(primitive));
@@ -173,7 +160,7 @@ mesh::Scene Document::scene() const {
   if (scene.triangle_count() == 0) {
     throw_bad_input("no triangles in the default scene", {.file = state_->file});
   }
-  MaterialReader(*state_, scene).read_all();
+  MaterialReader(model, scene).read_all();
   return scene;
 }
 

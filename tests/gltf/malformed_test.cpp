@@ -160,6 +160,24 @@ TEST(GltfRead, RejectsReferencesPastTheirArrays) {
   EXPECT_ERROR(with("/scene", 1), "default scene");
 }
 
+TEST(GltfRead, RejectsBadTransforms) {
+  EXPECT_ERROR(with("/nodes/0/matrix", {1, 2, 3}), "node 0: bad \"matrix\"");
+  EXPECT_ERROR(with("/nodes/0/translation", {0, 0, 1e300}), "node 0: bad \"translation\"");
+  EXPECT_ERROR(with("/nodes/0/scale", "large"), "node 0: bad \"scale\"");
+}
+
+TEST(GltfRead, RejectsBadMaterials) {
+  EXPECT_ERROR(with("/materials", {{{"doubleSided", 1}}}), "material 0: bad \"doubleSided\"");
+  const auto of = [](const ordered_json& pbr) {
+    return with("/materials", {{{"pbrMetallicRoughness", pbr}}});
+  };
+  EXPECT_ERROR(of({{"baseColorFactor", {1, 1, 1}}}), "material 0: bad \"baseColorFactor\"");
+  EXPECT_ERROR(of({{"baseColorTexture", {{"index", 0}}}}), "material 0: bad \"index\"");
+  EXPECT_ERROR(with("/textures", {{{"source", 0}}}), "texture 0: bad \"source\"");
+  // what only tinygltf looks at
+  EXPECT_ERROR(with("/materials", {{{"emissiveFactor", {1}}}}), "bad glTF: Array length");
+}
+
 TEST(GltfRead, RejectsNodeCycle) {
   ordered_json json = with("/nodes/0/children", {1});
   json["nodes"].push_back({{"children", {2}}});

@@ -2,6 +2,7 @@
 
 #include "core/file.h"
 #include "gltf/document.h"
+#include "gltf/import.h"
 #include "gltf/samples.h"
 
 namespace prt::gltf {
@@ -41,6 +42,36 @@ TEST(GltfRoundTrip, SceneComesBackAsItWas) {
   EXPECT_EQ(mesh::mesh_hash(after), mesh::mesh_hash(before));
 }
 
+// The colours of three vertices stored as VEC4 of normalised T, read back through import.
+template <class T>
+std::vector<Vec4> colors_stored_as(int component_type, const std::vector<T>& numbers) {
+  const samples::TemporaryFolder folder;
+  folder.write("colors.bin",
+               {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)});
+  auto json = samples::triangle_json();
+  const std::size_t bytes = numbers.size() * sizeof(T);
+  json["buffers"].push_back({{"byteLength", bytes}, {"uri", "colors.bin"}});
+  json["bufferViews"].push_back({{"buffer", 1}, {"byteLength", bytes}});
+  json["accessors"].push_back({{"bufferView", 2},
+                               {"componentType", component_type},
+                               {"normalized", true},
+                               {"count", 3},
+                               {"type", "VEC4"}});
+  json["meshes"][0]["primitives"][0]["attributes"] = {{"POSITION", 0}, {"COLOR_0", 3}};
+  const auto path = folder.write("a.gltf", json.dump());
+  return import_file(path, {}).document.scene().primitives[0].mesh.colors;
+}
+
+TEST(GltfRoundTrip, ColoursMayBeBytesOrShorts) {
+  const std::vector<Vec4> expected{{0, 0.2f, 1, 1}, {0.4f, 0.6f, 0.8f, 1}, {1, 1, 1, 0}};
+  EXPECT_EQ(
+      colors_stored_as<std::uint8_t>(5121, {0, 51, 255, 255, 102, 153, 204, 255, 255, 255, 255, 0}),
+      expected);
+  EXPECT_EQ(colors_stored_as<std::uint16_t>(
+                5123, {0, 13107, 65535, 65535, 26214, 39321, 52428, 65535, 65535, 65535, 65535, 0}),
+            expected);
+}
+
 TEST(GltfRoundTrip, TransferComesBackAsItWas) {
   const samples::TemporaryFolder folder;
   Document document = Document::from_scene(samples::scene());
@@ -75,6 +106,25 @@ TEST(GltfRoundTrip, MeansAloneAreATransferToo) {
   EXPECT_EQ(after->encoding.component_count, 0);
   EXPECT_TRUE(after->encoding.bases.empty());
   EXPECT_TRUE(after->encoding.weights.empty());
+}
+
+TEST(GltfRoundTrip, BakingAgainDoesNotMakeTheFileGrow) {
+  Document document = Document::from_scene(samples::scene());
+  document.set_precomputed_transfer(samples::transfer(6, 4, 9));
+  document = Document::parse(document.glb_bytes(), "a.glb");
+  document.set_precomputed_transfer(samples::transfer(6));
+  Document once = Document::from_scene(samples::scene());
+  once.set_precomputed_transfer(samples::transfer(6));
+  EXPECT_EQ(document.glb_bytes(), once.glb_bytes());
+}
+
+TEST(GltfRoundTrip, RemovedTransferLeavesTheFileItWasAddedTo) {
+  Document document = Document::from_scene(samples::scene());
+  const auto before = document.glb_bytes();
+  document.set_precomputed_transfer(samples::transfer(6));
+  document = Document::parse(document.glb_bytes(), "a.glb");
+  document.remove_precomputed_transfer();
+  EXPECT_EQ(document.glb_bytes(), before);
 }
 
 TEST(GltfRoundTrip, SameDocumentGivesSameBytes) {
