@@ -1,9 +1,9 @@
 #include "gltf/accessor.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "core/error.h"
 
@@ -27,48 +27,36 @@ T load(const std::byte* from) {
   return value;
 }
 
-float load_float(const std::byte* from, int component_type) {
+// Calls `function` with a zero of the type that glTF's number stands for.
+template <class Function>
+auto with_type(int component_type, const Function& function) {
   switch (component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return load<std::int8_t>(from);
+      return function(std::int8_t{});
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<std::uint8_t>(from);
+      return function(std::uint8_t{});
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return load<std::int16_t>(from);
+      return function(std::int16_t{});
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(from);
+      return function(std::uint16_t{});
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return static_cast<float>(load<std::uint32_t>(from));
+      return function(std::uint32_t{});
     default:
-      return load<float>(from);
+      return function(float{});
   }
 }
 
-std::uint32_t load_unsigned(const std::byte* from, int component_type) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<std::uint8_t>(from);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(from);
-    default:
-      return load<std::uint32_t>(from);
-  }
-}
-
-// The number that stands for 1 in a normalised accessor.
-float one_of(int component_type) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return std::numeric_limits<std::int8_t>::max();
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return std::numeric_limits<std::uint8_t>::max();
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return std::numeric_limits<std::int16_t>::max();
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return std::numeric_limits<std::uint16_t>::max();
-    default:
-      return 1.0f;
-  }
+// The elements' components, one after the other, as another type.
+template <class To>
+std::vector<To> convert(const Bytes& elements, int component_type) {
+  return with_type(component_type, [&](auto zero) {
+    using From = decltype(zero);
+    std::vector<To> values(elements.size() / sizeof(From));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<To>(load<From>(&elements[i * sizeof(From)]));
+    }
+    return values;
+  });
 }
 
 // Copies `count` elements of `size` bytes out of a view.
@@ -82,21 +70,21 @@ void copy_elements(const Model& model, int view, std::size_t offset, std::size_t
 
 void apply_sparse(const Model& model, const tinygltf::Accessor& accessor, std::size_t size,
                   Bytes& elements) {
-  const auto& [count, is_sparse, source, changed] = accessor.sparse;
-  const auto n = static_cast<std::size_t>(count);
-  const std::size_t width = component_bytes(static_cast<std::size_t>(source.componentType));
-  Bytes indices(n * width), values(n * size);
-  copy_elements(model, source.bufferView, static_cast<std::size_t>(source.byteOffset), width, n,
-                indices.data());
-  copy_elements(model, changed.bufferView, static_cast<std::size_t>(changed.byteOffset), size, n,
-                values.data());
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t target = load_unsigned(&indices[i * width], source.componentType);
-    if ((target + 1) * size > elements.size()) {
+  const auto &indices = accessor.sparse.indices, &values = accessor.sparse.values;
+  const auto count = static_cast<std::size_t>(accessor.sparse.count);
+  const std::size_t width = component_bytes(static_cast<std::size_t>(indices.componentType));
+  Bytes target_bytes(count * width), changed(count * size);
+  copy_elements(model, indices.bufferView, static_cast<std::size_t>(indices.byteOffset), width,
+                count, target_bytes.data());
+  copy_elements(model, values.bufferView, static_cast<std::size_t>(values.byteOffset), size, count,
+                changed.data());
+  const auto targets = convert<std::uint32_t>(target_bytes, indices.componentType);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (targets[i] >= accessor.count) {
       throw_bad_input("sparse index past the accessor's end",
-                      {.file = model.state.file, .found = std::to_string(target)});
+                      {.file = model.state.file, .found = std::to_string(targets[i])});
     }
-    std::memcpy(&elements[target * size], &values[i * size], size);
+    std::memcpy(&elements[targets[i] * size], &changed[i * size], size);
   }
 }
 
@@ -154,44 +142,32 @@ Bytes read_elements(const Model& model, int index) {
 }
 
 std::vector<float> read_components(const Model& model, int index) {
-  const int type = accessor_of(model, index).componentType;
-  const std::size_t width = component_bytes(static_cast<std::size_t>(type));
-  const Bytes elements = read_elements(model, index);
-  std::vector<float> values(elements.size() / width);
-  if (type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
-    std::memcpy(values.data(), elements.data(), elements.size());
-    return values;
-  }
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = load_float(&elements[i * width], type);
-  return values;
+  return convert<float>(read_elements(model, index), accessor_of(model, index).componentType);
 }
 
 std::vector<float> read_floats(const Model& model, int index) {
   std::vector<float> values = read_components(model, index);
   const tinygltf::Accessor& accessor = accessor_of(model, index);
-  const float one = one_of(accessor.componentType);
-  if (!accessor.normalized || one == 1.0f) return values;
-  for (float& value : values) value = std::max(value / one, -1.0f);  // glTF 2.0 §3.11
+  if (!accessor.normalized) return values;
+  // glTF 2.0 §3.11; only integers of 8 and 16 bits may be normalised.
+  const float one = with_type(accessor.componentType, [](auto zero) {
+    return sizeof(zero) < 4 ? static_cast<float>(std::numeric_limits<decltype(zero)>::max()) : 1.0f;
+  });
+  if (one == 1.0f) return values;
+  for (float& value : values) value = std::max(value / one, -1.0f);
   return values;
 }
 
 std::vector<std::uint32_t> read_unsigned(const Model& model, int index) {
   const int type = accessor_of(model, index).componentType;
-  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+  const bool is_unsigned =
+      with_type(type, [](auto zero) { return std::is_unsigned_v<decltype(zero)>; });
+  if (!is_unsigned) {
     throw_bad_input("not unsigned integers", {.file = model.state.file,
                                               .element = "accessor " + std::to_string(index),
                                               .found = "component type " + std::to_string(type)});
   }
-  const std::size_t width = component_bytes(static_cast<std::size_t>(type));
-  const Bytes elements = read_elements(model, index);
-  std::vector<std::uint32_t> values(elements.size() / width);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = load_unsigned(&elements[i * width], type);
-  }
-  return values;
+  return convert<std::uint32_t>(read_elements(model, index), type);
 }
 
 std::size_t add_view(State& state, Bytes bytes) {

@@ -25,8 +25,9 @@ Json readable_part(const Json& root) {
     if (const Json* array = find(root, name)) part[name] = *array;
   }
   if (const Json* scene = find(root, "scene")) part["scene"] = *scene;
-  if (const Json* transfer = find_transfer(root))
+  if (const Json* transfer = find_transfer(root)) {
     part["extensions"][kTransferExtension] = *transfer;
+  }
   return part;
 }
 
