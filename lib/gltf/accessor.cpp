@@ -70,7 +70,8 @@ void copy_elements(const Model& model, int view, std::size_t offset, std::size_t
 
 void apply_sparse(const Model& model, const tinygltf::Accessor& accessor, std::size_t size,
                   Bytes& elements) {
-  const auto &indices = accessor.sparse.indices, &values = accessor.sparse.values;
+  const auto& indices = accessor.sparse.indices;
+  const auto& values = accessor.sparse.values;
   const auto count = static_cast<std::size_t>(accessor.sparse.count);
   const std::size_t width = component_bytes(static_cast<std::size_t>(indices.componentType));
   Bytes target_bytes(count * width), changed(count * size);
