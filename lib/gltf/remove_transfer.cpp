@@ -1,6 +1,8 @@
 // Takes PRTKIT_precomputed_transfer out of a document, so that baking again does not make it grow.
 #include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "gltf/state.h"
 
@@ -29,10 +31,11 @@ Numbers references(const Json& root) {
   return numbers;
 }
 
-Numbers views_in_use(const Json& root) {
-  Numbers views;
+// The views that accessors and images name, as often as they do.
+std::multiset<std::size_t> views_in_use(const Json& root) {
+  std::multiset<std::size_t> views;
   const auto add = [&](const Json& object) {
-    if (const Json* view = find(object, "bufferView")) collect_numbers(*view, views);
+    if (const Json* view = find(object, "bufferView")) views.insert(view->get<std::size_t>());
   };
   for (const Json& image : array_of(root, "images")) add(image);
   for (const Json& accessor : array_of(root, "accessors")) {
@@ -42,38 +45,48 @@ Numbers views_in_use(const Json& root) {
   return views;
 }
 
-// The bytes of a view that is gone go when they are the last of their buffer and no other view's.
-void shorten_buffer(State& state, const Json& gone) {
-  const std::size_t buffer = gone["buffer"].get<std::size_t>();
-  const std::size_t offset = gone.value("byteOffset", std::size_t{0});
-  const std::size_t padded_end = offset + (gone["byteLength"].get<std::size_t>() + 3) / 4 * 4;
-  if (padded_end < state.buffers[buffer].size()) return;
-  for (const Json& view : state.root["bufferViews"]) {
+// The bytes of views that are gone, the last first, go when they are the last of their buffer and
+// no other view's.
+void shorten_buffers(State& state, const std::vector<Json>& gone) {
+  const auto range = [](const Json& view) {
+    const std::size_t begin = view.value("byteOffset", std::size_t{0});
+    return std::pair(begin, begin + view["byteLength"].get<std::size_t>());
+  };
+  std::vector<std::size_t> kept(state.buffers.size());
+  for (const Json& view : array_of(state.root, "bufferViews")) {
     if (view.contains("extensions")) return;  // they may name a part of a buffer
-    const std::size_t end =
-        view.value("byteOffset", std::size_t{0}) + view["byteLength"].get<std::size_t>();
-    if (view["buffer"] == buffer && end > offset) return;
+    std::size_t& end = kept[view["buffer"].get<std::size_t>()];
+    end = std::max(end, range(view).second);
   }
-  state.buffers[buffer].resize(offset);
-  state.root["buffers"][buffer]["byteLength"] = offset;
+  for (const Json& view : gone) {
+    const std::size_t buffer = view["buffer"].get<std::size_t>();
+    const auto [begin, end] = range(view);
+    if (begin < kept[buffer] || (end + 3) / 4 * 4 < state.buffers[buffer].size()) continue;
+    state.buffers[buffer].resize(begin);
+    state.root["buffers"][buffer]["byteLength"] = begin;
+  }
 }
 
 void drop_last_accessors(State& state, const Numbers& dead) {
   const Numbers referenced = references(state.root);
+  auto used = views_in_use(state.root);
   Json& accessors = make_array(state.root, "accessors");
   Json& views = make_array(state.root, "bufferViews");
+  std::vector<Json> gone;
   while (accessors.size() > 1) {
     const std::size_t last = accessors.size() - 1;
-    if (!dead.contains(last) || referenced.contains(last)) return;
-    const Json accessor = accessors[last];
+    if (!dead.contains(last) || referenced.contains(last)) break;
+    if (const Json* reference = find(accessors[last], "bufferView")) {
+      const std::size_t view = reference->get<std::size_t>();
+      used.erase(used.find(view));
+      if (view + 1 == views.size() && !referenced.contains(view) && !used.contains(view)) {
+        gone.push_back(views[view]);
+        views.erase(view);
+      }
+    }
     accessors.erase(last);
-    const std::size_t view = accessor.value("bufferView", views.size());
-    if (view + 1 != views.size() || referenced.contains(view)) continue;
-    if (views_in_use(state.root).contains(view)) continue;
-    const Json gone = views[view];
-    views.erase(view);
-    shorten_buffer(state, gone);
   }
+  shorten_buffers(state, gone);
 }
 
 // The extension's own key of an object.
