@@ -1,13 +1,15 @@
-// Speed of static clustered PCA, beside the matrix products of the installed BLAS in the same run:
+// Speed of static clustered PCA, beside the matrix products of the installed BLAS and beside the
+// peak of the arithmetic units in the same run:
 //   bench_cpca [points dimension clusters]…
 // Without arguments: the reference problem of glossy transfer, then diffuse transfer of a bunny.
-// Rates of products are the best of several, interleaved, since other load comes and goes.
+// Times are medians of several, interleaved, since other load comes and goes.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "core/cpu.h"
@@ -19,10 +21,13 @@
 #include "cpca/quantizer.h"
 #include "cpca/seeding.h"
 #include "linalg/product.h"
+#include "peak.h"
 
 namespace {
 
 using namespace prt;
+
+constexpr std::size_t kBlock = 448;
 
 struct Problem {
   std::size_t point_count, dimension, cluster_count;
@@ -55,50 +60,62 @@ std::vector<float> make_signal(const Problem& problem) {
   return signal;
 }
 
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+void multiply_by_blas(const Problem& problem, const std::vector<float>& signal,
+                      const std::vector<float>& means, std::vector<float>& scores) {
+  const auto& [point_count, n, cluster_count] = problem;
+  parallel_for(point_count, kBlock,
+               [&, n = n, k = cluster_count](std::size_t begin, std::size_t end) {
+                 linalg::gemm(1.0f, {&signal[begin * n], end - begin, n}, linalg::Transpose::no,
+                              {means.data(), k, n}, linalg::Transpose::yes, 0.0f,
+                              {&scores[begin * k], end - begin, k});
+               });
+}
+
+void classify(const Problem& problem, const std::vector<float>& signal,
+              const std::vector<float>& means, std::vector<std::uint32_t>& labels) {
+  const cpca::NearestMean nearest(means, {means.data(), problem.dimension});
+  parallel_for(problem.point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+    nearest.classify(signal, begin, end, labels);
+  });
+}
+
 void run(const Problem& problem) {
-  constexpr int kIterations = 20, kRepetitions = 6;
-  constexpr std::size_t kBlock = 448;
+  constexpr int kIterations = 20, kRepetitions = 5;
   const auto& [point_count, n, cluster_count] = problem;
   const std::vector<float> signal = make_signal(problem);
-  const double product_flops =
-      2.0 * static_cast<double>(point_count) * static_cast<double>(n * cluster_count);
-
-  std::vector<float> means;
-  const double seeding = seconds_of([&] { means = cpca::seed_means(signal, n, cluster_count, 1); });
-  std::vector<float> scores(point_count * cluster_count);
+  std::vector<float> means, scores(point_count * cluster_count);
   std::vector<std::uint32_t> labels(point_count);
-  double blas = INFINITY, classification = INFINITY, clustering = INFINITY;
+  std::vector<double> blas, peak, classification, clustering, seeding;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
-    blas =
-        std::min(blas, seconds_of([&] {
-                   parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
-                     linalg::gemm(1.0f, {&signal[begin * n], end - begin, n}, linalg::Transpose::no,
-                                  {means.data(), cluster_count, n}, linalg::Transpose::yes, 0.0f,
-                                  {&scores[begin * cluster_count], end - begin, cluster_count});
-                   });
-                 }));
-    classification =
-        std::min(classification, seconds_of([&] {
-                   const cpca::NearestMean nearest(means, {means.data(), n});
-                   parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
-                     nearest.classify(signal, begin, end, labels);
-                   });
-                 }));
-    if (repetition % 2 == 0) continue;
+    seeding.push_back(seconds_of([&] { means = cpca::seed_means(signal, n, cluster_count, 1); }));
+    blas.push_back(seconds_of([&] { multiply_by_blas(problem, signal, means, scores); }));
+    peak.push_back(1e-9 * bench::peak_flops());
+    classification.push_back(seconds_of([&] { classify(problem, signal, means, labels); }));
     int iterations = 0;
     const double elapsed =
         seconds_of([&] { iterations = cpca::quantize(signal, n, means, kIterations).iterations; });
-    clustering = std::min(clustering, elapsed / iterations * kIterations);
+    clustering.push_back(elapsed / iterations * kIterations);
+    peak.push_back(1e-9 * bench::peak_flops());
   }
-  const double blas_rate = 1e-9 * product_flops / blas;
-  const double rate = 1e-9 * product_flops * kIterations / clustering;
-  fmt::print("{} points x {}, {} clusters\n", point_count, n, cluster_count);
-  fmt::print("  SGEMM, {:22}{:8.1f} GFLOP/s\n", linalg::blas_description(), blas_rate);
-  fmt::print("  classification alone         {:8.1f} GFLOP/s\n",
-             1e-9 * product_flops / classification);
-  fmt::print("  {} LBG iterations            {:8.3f} s, {:.1f} GFLOP/s: {:.0f}% of SGEMM\n",
-             kIterations, clustering, rate, 100.0 * rate / blas_rate);
-  fmt::print("  seeding                      {:8.3f} s\n", seeding);
+  const double gflop =
+      2e-9 * static_cast<double>(point_count) * static_cast<double>(n * cluster_count);
+  const double peak_rate = median(peak), blas_rate = gflop / median(blas);
+  const auto print_rate = [&](const std::string& name, double seconds, double products) {
+    const double rate = products * gflop / seconds;
+    fmt::print("  {:28}{:8.3f} s {:8.1f} GFLOP/s {:5.0f}% of SGEMM {:4.0f}% of peak\n", name,
+               seconds, rate, 100.0 * rate / blas_rate, 100.0 * rate / peak_rate);
+  };
+  fmt::print("{} points x {}, {} clusters; multiply-adds in registers {:.1f} GFLOP/s\n",
+             point_count, n, cluster_count, peak_rate);
+  print_rate(fmt::format("SGEMM, {}", linalg::blas_description()), median(blas), 1.0);
+  print_rate("classification alone", median(classification), 1.0);
+  print_rate(fmt::format("{} LBG iterations", kIterations), median(clustering), kIterations);
+  print_rate("the same with seeding", median(clustering) + median(seeding), kIterations);
 
   cpca::Encoded encoded;
   const double encoding = seconds_of([&] {

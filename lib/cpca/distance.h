@@ -7,25 +7,31 @@
 
 namespace prt::cpca {
 
-/// Sixteen partial sums in double, added up in a fixed order.
-inline double squared_distance(std::span<const float> a, std::span<const float> b) {
+constexpr std::size_t kDistanceLanes = 16;
+
+/// Sixteen partial sums in double, added up in a fixed order. Squares of floats are exact in
+/// double, so that every instruction set gives the same bits.
+[[gnu::always_inline]] inline double squared_distance(std::span<const float> a,
+                                                      std::span<const float> b) {
   assert(a.size() == b.size());
-  constexpr std::size_t kLanes = 16;
-  double sums[kLanes] = {};
+  double sums[kDistanceLanes] = {};
   std::size_t i = 0;
-  for (; i + kLanes <= a.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (; i + kDistanceLanes <= a.size(); i += kDistanceLanes) {
+    for (std::size_t lane = 0; lane < kDistanceLanes; ++lane) {
       const float difference = a[i + lane] - b[i + lane];
       sums[lane] += double{difference} * double{difference};
     }
   }
-  double sum = 0.0;
+  double rest = 0.0;
   for (; i < a.size(); ++i) {
     const float difference = a[i] - b[i];
-    sum += double{difference} * double{difference};
+    rest += double{difference} * double{difference};
   }
-  for (double part : sums) sum += part;
-  return sum;
+#pragma GCC unroll 4
+  for (std::size_t half = kDistanceLanes / 2; half > 0; half /= 2) {
+    for (std::size_t lane = 0; lane < half; ++lane) sums[lane] += sums[lane + half];
+  }
+  return sums[0] + rest;
 }
 
 }  // namespace prt::cpca

@@ -22,23 +22,25 @@ using TileAvx512 = Tile<64, 14>;  // 28 of 32 registers
 using TileAvx2 = Tile<32, 6>;     // 12 of 16
 using TileBaseline = Tile<16, 6>;
 
-/// Best score and panel of every lane, for each point of a tile.
+/// Best score of every lane and the vector of means it came from, for each point of a tile.
 template <class T>
 struct Best {
-  typename T::Floats score[T::kRows][2];
-  typename T::Ints panel[T::kRows][2];
+  typename T::Floats score[T::kRows];
+  typename T::Ints vector[T::kRows];
 };
 
 /// Scores of a tile of points, `stride` floats apart, against one panel of means; the best so far
-/// are kept. Few pointers, so that none is spilled in the loop: three rows hang on each.
+/// are kept. Few pointers, so that none is spilled in the loop: three rows hang on each. Meanwhile
+/// the next tile comes to the cache, `ahead_step` bytes a step from `ahead` on.
 template <class T>
 [[gnu::always_inline]] inline void multiply_tile(const float* points, std::size_t stride,
                                                  const float* means, const float* biases,
+                                                 const char* ahead, std::size_t ahead_step,
                                                  std::int32_t panel, Best<T>* best) {
   using Floats = typename T::Floats;
   const auto* mean = reinterpret_cast<const Floats*>(means);
   const auto* bias = reinterpret_cast<const Floats*>(biases);
-  constexpr int kPointers = (T::kRows + 2) / 3;
+  constexpr int kPointers = (T::kRows + 2) / 3, kAhead = 32;
   const float* rows[kPointers];
   Floats sum[T::kRows][2];
 #pragma GCC unroll 16
@@ -47,6 +49,10 @@ template <class T>
   for (int r = 0; r < T::kRows; ++r) sum[r][0] = bias[0], sum[r][1] = bias[1];
   for (std::size_t i = 0; i < stride; ++i) {
     const Floats first = mean[0], second = mean[1];
+    __builtin_prefetch(ahead, 0, 2);  // to the second level
+    __builtin_prefetch(mean + kAhead);
+    __builtin_prefetch(mean + kAhead + 1);
+    ahead += ahead_step;
     mean += 2;
 #pragma GCC unroll 16
     for (int r = 0; r < T::kRows; ++r) {
@@ -58,14 +64,14 @@ template <class T>
     for (int r = 0; r < kPointers; ++r) ++rows[r];
   }
   asm("" : "+r"(best));  // stays in memory: registers are for the sums
+  const auto first = typename T::Ints{} + 2 * panel, second = first + 1;
 #pragma GCC unroll 16
   for (int r = 0; r < T::kRows; ++r) {
-#pragma GCC unroll 2
-    for (int v = 0; v < 2; ++v) {
-      const auto better = sum[r][v] > best->score[r][v];
-      best->score[r][v] = better ? sum[r][v] : best->score[r][v];
-      best->panel[r][v] = better ? typename T::Ints{} + panel : best->panel[r][v];
-    }
+    const auto odd = sum[r][1] > sum[r][0];
+    const Floats score = odd ? sum[r][1] : sum[r][0];
+    const auto better = score > best->score[r];
+    best->score[r] = better ? score : best->score[r];
+    best->vector[r] = better ? (odd ? second : first) : best->vector[r];
   }
 }
 
@@ -87,32 +93,25 @@ template <int Bytes>
   }
 }
 
-/// Label of one point of a tile from the best of every lane.
-template <class T>
-[[gnu::always_inline]] inline std::uint32_t find_label(const Best<T>& best, int row) {
-  typename T::Ints lane;
-  for (int i = 0; i < T::kLanes; ++i) lane[i] = i;
-  const auto label = best.panel[row][0] * T::kPanel + lane;
-  const auto other = best.panel[row][1] * T::kPanel + lane + T::kLanes;
-  const auto second = (best.score[row][1] > best.score[row][0]) |
-                      ((best.score[row][1] == best.score[row][0]) & (other < label));
-  return reduce_lanes<T::kLanes * 4>(second ? best.score[row][1] : best.score[row][0],
-                                     second ? other : label);
-}
-
 template <class T>
 [[gnu::always_inline]] inline void classify_tile(const float* points, std::size_t dimension,
                                                  const float* panels, const float* biases,
                                                  std::size_t panel_count, std::uint32_t* labels) {
+  typename T::Ints lane;
   Best<T> best{};
-  for (auto& row : best.score) {
-    for (auto& score : row) score -= std::numeric_limits<float>::infinity();
-  }
+  for (int i = 0; i < T::kLanes; ++i) lane[i] = i;
+  for (auto& score : best.score) score -= std::numeric_limits<float>::infinity();
+  const std::size_t tile_size = T::kRows * sizeof(float);  // for one coefficient
+  const std::size_t ahead_step = (tile_size + panel_count - 1) / panel_count;
+  const char* next = reinterpret_cast<const char*>(points) + tile_size * dimension;
   for (std::size_t p = 0; p < panel_count; ++p) {
     multiply_tile<T>(points, dimension, panels + p * dimension * T::kPanel, biases + p * T::kPanel,
-                     static_cast<std::int32_t>(p), &best);
+                     next + p * dimension * ahead_step, ahead_step, static_cast<std::int32_t>(p),
+                     &best);
   }
-  for (int r = 0; r < T::kRows; ++r) labels[r] = find_label<T>(best, r);
+  for (int r = 0; r < T::kRows; ++r) {
+    labels[r] = reduce_lanes<T::kLanes * 4>(best.score[r], best.vector[r] * T::kLanes + lane);
+  }
 }
 
 /// The last tile overlaps the one before it. Too few points for one tile are copied into one.
