@@ -50,7 +50,7 @@ std::vector<float> gather_components(const Model& model, int index,
 }
 
 // Rearranges an accessor's elements into a new one of the same type.
-std::size_t gather_accessor(State& state, const Model& model, int index,
+std::size_t gather_accessor(State& state, const Model& model, const std::string& name, int index,
                             const std::vector<std::uint32_t>& source) {
   const tinygltf::Accessor& from = accessor_of(model, index);
   const std::size_t size = element_bytes(from.componentType, from.type);
@@ -72,7 +72,7 @@ std::size_t gather_accessor(State& state, const Model& model, int index,
   accessor.erase("sparse");
   accessor.erase("byteOffset");
   for (const auto& [key, value] : state.element("accessors", added).items()) accessor[key] = value;
-  const bool bounded = accessor.contains("min") || accessor.contains("max");
+  const bool bounded = name == "POSITION" || accessor.contains("min") || accessor.contains("max");
   state.root["accessors"][added] = std::move(accessor);
   if (bounded) set_bounds(state, added, gather_components(model, index, source));
   return added;
@@ -86,7 +86,7 @@ void carry_other_attributes(State& state, const Model& model, Json& attributes,
     if (is_interpolated(name)) {
       carried[name] = accessor;
     } else if (!source.empty()) {
-      carried[name] = gather_accessor(state, model, accessor.get<int>(), source);
+      carried[name] = gather_accessor(state, model, name, accessor.get<int>(), source);
     } else {
       log::warning("{}: {}: {} cannot be interpolated, dropped", where.file, where.element, name);
     }
@@ -103,8 +103,8 @@ void carry_targets(State& state, const Model& model, Json& primitive,
     return;
   }
   for (Json& target : primitive["targets"]) {
-    for (Json& accessor : target) {
-      accessor = gather_accessor(state, model, accessor.get<int>(), source);
+    for (auto& [name, accessor] : target.items()) {
+      accessor = gather_accessor(state, model, name, accessor.get<int>(), source);
     }
   }
 }

@@ -23,15 +23,23 @@ prt::gltf::Document parse(std::span<const std::byte> bytes) {
   return prt::gltf::Document::parse(bytes, "/nonexistent/fuzz.glb", kLimits);
 }
 
-void use(std::span<const std::byte> bytes) {
-  prt::gltf::Document document = parse(bytes);
-  attempt([&] { document.scene(); });
-  attempt([&] { document.precomputed_transfer(); });
+// Only what the limits forbid is no longer accepted once it is saved.
+void check_saved(const prt::gltf::Document& document) {
   try {
     parse(document.glb_bytes());
   } catch (const prt::Error& error) {
     if (error.details().found.find("bytes") == std::string::npos) __builtin_trap();
   }
+}
+
+void use(std::span<const std::byte> bytes) {
+  prt::gltf::Document document = parse(bytes);
+  attempt([&] { document.scene(); });
+  attempt([&] { document.precomputed_transfer(); });
+  check_saved(document);
+  prt::gltf::Document bare = parse(bytes);
+  bare.remove_precomputed_transfer();
+  check_saved(bare);
   attempt([&] {
     prt::gltf::repair_geometry(*document.state(), {});
     document.scene();  // what import accepts can be baked

@@ -103,5 +103,24 @@ TEST(GltfSurvival, EverythingUnknownSurvivesImport) {
   EXPECT_EQ(result.document.scene().vertex_count(), 3u);
 }
 
+// glTF wants min and max as stored, not as scaled.
+TEST(GltfSurvival, BoundsOfMovedNormalisedTargetsAreOfTheStoredNumbers) {
+  ordered_json json = rich_json();
+  json["accessors"].push_back({{"bufferView", 0},
+                               {"byteOffset", 12},  // 0 0 -128, 63 0 0, 0 0 0
+                               {"componentType", 5120},
+                               {"normalized", true},
+                               {"count", 3},
+                               {"type", "VEC3"}});
+  json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"] = 3;
+  const samples::TemporaryFolder folder;
+  const ImportResult result = import_file(folder.write("a.gltf", json.dump()), {});
+  const ordered_json after = json_of(result.document.glb_bytes());
+  const auto moved = after["meshes"][0]["primitives"][0]["targets"][0]["POSITION"].get<int>();
+  ASSERT_GT(moved, 3);
+  EXPECT_EQ(after["accessors"][moved]["min"], ordered_json({0.0, 0.0, -128.0}));
+  EXPECT_EQ(after["accessors"][moved]["max"], ordered_json({63.0, 0.0, 0.0}));
+}
+
 }  // namespace
 }  // namespace prt::gltf
