@@ -1,4 +1,4 @@
-// Shadow rays of a diffuse transfer bake, answered by bare Embree in each of its modes and by us:
+// Shadow rays of a diffuse transfer bake, answered by bare Embree in its fastest modes and by us:
 // the same rays (blocks of neighbouring vertices of the model, every direction above their
 // horizon), the same threads, the same run.
 //
@@ -12,14 +12,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <functional>
-#include <sstream>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "core/parallel.h"
-#include "core/random.h"
+#include "mesh/mesh_file.h"
+#include "mesh/normals.h"
 #include "ray/engine.h"
 #include "transfer/diffuse.h"
 #include "transfer/directions.h"
@@ -33,65 +33,27 @@ using ray::Ray;
 constexpr std::size_t kVertexBlock = 64;  // as in lib/transfer
 constexpr std::size_t kBlockStride = 64;  // every 64th block of vertices is traced
 constexpr std::size_t kRaysPerTask = 1 << 14;
+constexpr int kPasses = 3;
 
-mesh::TriangleMesh read_obj(const std::string& path) {
-  mesh::TriangleMesh mesh;
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error("cannot read " + path);
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    words >> kind;
-    if (kind == "v") {
-      Vec3 p;
-      words >> p.x >> p.y >> p.z;
-      mesh.positions.push_back(p);
-    } else if (kind == "f") {
-      for (std::string corner; words >> corner;) {
-        mesh.indices.push_back(static_cast<std::uint32_t>(std::stoul(corner)) - 1);
-      }
-    }
-  }
-  mesh.normals.assign(mesh.positions.size(), Vec3(0.0f));
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
-    const auto [a, b, c] = mesh.triangle(i);
-    const Vec3 normal =
-        (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
-    for (std::uint32_t k : {a, b, c}) mesh.normals[k] += normal;
-  }
-  for (Vec3& n : mesh.normals) n.normalize();
+/// The first part of a model, with smooth normals.
+mesh::TriangleMesh read_model(const std::string& path) {
+  mesh::TriangleMesh mesh = mesh::read_mesh_file(path).primitives.at(0).mesh;
+  mesh::compute_normals(mesh, 180.0f);
   return mesh;
 }
 
-/// The same rays in three orders.
-struct Rays {
-  std::vector<Ray> by_direction;  ///< block by block: a direction, then its vertices
-  std::vector<Ray> by_vertex;     ///< a vertex, then its directions (ours)
-  std::vector<Ray> shuffled;
-};
-
-Rays make_rays(const mesh::TriangleMesh& mesh, std::size_t ray_count) {
-  const transfer::Directions directions = transfer::make_directions(2 * ray_count, 1);
+/// The rays of every kBlockStride-th block of neighbouring vertices: a vertex, then its directions.
+std::vector<Ray> make_rays(const mesh::TriangleMesh& mesh, const transfer::Directions& directions) {
   const std::vector<std::uint32_t> order = transfer::spatial_order(mesh.positions);
-  Rays rays;
-  const auto add = [&](std::vector<Ray>& list, std::uint32_t vertex, std::size_t d) {
-    const Vec3 n = mesh.normals[vertex];
-    if (n.dot(directions[d]) <= 0.0f) return;
-    list.push_back({ray::offset_origin(mesh.positions[vertex], n), 0.0f, directions[d]});
-  };
+  std::vector<Ray> rays;
   for (std::size_t first = 0; first < order.size(); first += kVertexBlock * kBlockStride) {
-    const std::size_t end = std::min(first + kVertexBlock, order.size());
-    for (std::size_t d = 0; d < directions.count(); ++d) {
-      for (std::size_t v = first; v < end; ++v) add(rays.by_direction, order[v], d);
+    for (std::size_t v = first; v < std::min(first + kVertexBlock, order.size()); ++v) {
+      const Vec3 n = mesh.normals[order[v]];
+      const Vec3 origin = ray::offset_origin(mesh.positions[order[v]], n);
+      for (std::size_t d = 0; d < directions.count(); ++d) {
+        if (n.dot(directions[d]) > 0.0f) rays.push_back({origin, 0.0f, directions[d]});
+      }
     }
-    for (std::size_t v = first; v < end; ++v) {
-      for (std::size_t d = 0; d < directions.count(); ++d) add(rays.by_vertex, order[v], d);
-    }
-  }
-  rays.shuffled = rays.by_vertex;
-  Pcg32 random(1);
-  for (std::size_t i = rays.shuffled.size(); i > 1; --i) {
-    std::swap(rays.shuffled[i - 1], rays.shuffled[random.below(static_cast<std::uint32_t>(i))]);
   }
   return rays;
 }
@@ -104,8 +66,8 @@ double cpu_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Million rays a second, by processor time and the number of threads, of the best of three passes
-/// over all rays, and what it counted as blocked.
+/// Million rays a second, by processor time and the number of threads, of one pass over all
+/// rays, and what it counted as blocked.
 struct Rate {
   double mrays = 0.0;
   std::size_t blocked = 0;
@@ -113,21 +75,16 @@ struct Rate {
 
 Rate measure(std::size_t count,
              const std::function<std::size_t(std::size_t begin, std::size_t end)>& trace) {
-  Rate rate;
-  for (int pass = 0; pass < 3; ++pass) {
-    std::vector<std::size_t> blocked(block_count(count, kRaysPerTask));
-    const double start = cpu_seconds();
-    parallel_for(count, kRaysPerTask, [&](std::size_t begin, std::size_t end) {
-      _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-      _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-      blocked[begin / kRaysPerTask] = trace(begin, end);
-    });
-    const double seconds = (cpu_seconds() - start) / thread_count();
-    rate.mrays = std::max(rate.mrays, static_cast<double>(count) / seconds * 1e-6);
-    rate.blocked = 0;
-    for (std::size_t b : blocked) rate.blocked += b;
-  }
-  return rate;
+  std::vector<std::size_t> blocked(block_count(count, kRaysPerTask));
+  const double start = cpu_seconds();
+  parallel_for(count, kRaysPerTask, [&](std::size_t begin, std::size_t end) {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    blocked[begin / kRaysPerTask] = trace(begin, end);
+  });
+  const double seconds = (cpu_seconds() - start) / thread_count();
+  return {static_cast<double>(count) / seconds * 1e-6,
+          std::accumulate(blocked.begin(), blocked.end(), std::size_t{0})};
 }
 
 RTCIntersectContext make_context(bool coherent) {
@@ -224,64 +181,19 @@ class BareEmbree {
 };
 
 std::vector<RTCRay> embree_rays(const std::vector<Ray>& rays) {
-  std::vector<RTCRay> result(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    result[i] = {rays[i].origin.x,
-                 rays[i].origin.y,
-                 rays[i].origin.z,
-                 rays[i].t_near,
-                 rays[i].direction.x,
-                 rays[i].direction.y,
-                 rays[i].direction.z,
-                 0.0f,
-                 rays[i].t_far,
-                 0xffffffffu,
-                 0,
-                 0};
+  std::vector<RTCRay> result;
+  for (const Ray& ray : rays) {
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    result.push_back(
+        {o.x, o.y, o.z, ray.t_near, d.x, d.y, d.z, 0.0f, ray.t_far, 0xffffffffu, 0, 0});
   }
   return result;
 }
 
-void print_row(const std::string& name, const char* order, const Rate& rate, std::size_t count) {
-  fmt::print("{:<44} {:<13} {:7.2f}   {:6.3f}%\n", name, order, rate.mrays,
-             100.0 * static_cast<double>(rate.blocked) / static_cast<double>(count));
-}
-
-/// All modes of one scene build; the fastest rate.
-double sweep(const mesh::TriangleMesh& mesh, const Rays& rays, bool robust,
-             RTCBuildQuality quality) {
-  const BareEmbree embree(mesh, robust, quality);
-  const std::string scene = fmt::format("{} {}", robust ? "robust" : "fast",
-                                        quality == RTC_BUILD_QUALITY_HIGH ? "high" : "medium");
-  double best = 0.0;
-  const std::pair<const char*, const std::vector<Ray>*> orders[] = {
-      {"by direction", &rays.by_direction},
-      {"by vertex", &rays.by_vertex},
-      {"shuffled", &rays.shuffled}};
-  for (const auto& [order, list] : orders) {
-    const std::vector<RTCRay> bare = embree_rays(*list);
-    for (bool coherent : {false, true}) {
-      if (coherent && list == &rays.shuffled) continue;  // it is not, and takes three times as long
-      const auto show = [&](const char* mode, const Rate& rate) {
-        best = std::max(best, rate.mrays);
-        print_row(fmt::format("Embree {}, {}{}", scene, mode, coherent ? ", coherent" : ""), order,
-                  rate, bare.size());
-      };
-      show("single", embree.single(bare, coherent));
-      show("packets of 4", embree.packets<RTCRay4, 4>(bare, coherent, rtcOccluded4));
-      show("packets of 8", embree.packets<RTCRay8, 8>(bare, coherent, rtcOccluded8));
-      show("packets of 16", embree.packets<RTCRay16, 16>(bare, coherent, rtcOccluded16));
-      show("streams of 64", embree.stream(bare, coherent));
-    }
-  }
-  return best;
-}
-
-Rate measure_engine(const mesh::TriangleMesh& mesh, const std::vector<Ray>& rays) {
-  const auto engine = ray::make_embree_engine({mesh.positions, mesh.indices});
+Rate measure_engine(const ray::Engine& engine, const std::vector<Ray>& rays) {
   return measure(rays.size(), [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint8_t> blocked(end - begin);
-    engine->occluded({&rays[begin], end - begin}, blocked, ray::Coherence::coherent);
+    engine.occluded({&rays[begin], end - begin}, blocked, ray::Coherence::coherent);
     return static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), 1));
   });
 }
@@ -297,37 +209,76 @@ double measure_bake(const mesh::TriangleMesh& mesh, int ray_count) {
   return static_cast<double>(stats.rays_cast) / seconds * 1e-6;
 }
 
+struct Mode {
+  std::string name;
+  std::function<Rate()> run;
+  Rate best = {};
+};
+
+/// One pass of each mode after the other, several times, so that a machine whose speed drifts
+/// treats all alike.
+void run_interleaved(std::vector<Mode>& modes) {
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (Mode& mode : modes) {
+      const Rate rate = mode.run();
+      if (rate.mrays > mode.best.mrays) mode.best = rate;
+    }
+  }
+}
+
+/// Modes of one scene; packets of 4 and incoherent flags were never the fastest.
+void add_modes(const std::string& name, const BareEmbree& embree, const std::vector<RTCRay>& rays,
+               std::vector<Mode>& modes) {
+  modes.push_back({name + ", packets of 16, coherent",
+                   [&] { return embree.packets<RTCRay16, 16>(rays, true, rtcOccluded16); }});
+  modes.push_back({name + ", packets of 16, incoherent",
+                   [&] { return embree.packets<RTCRay16, 16>(rays, false, rtcOccluded16); }});
+  modes.push_back({name + ", packets of 8, coherent",
+                   [&] { return embree.packets<RTCRay8, 8>(rays, true, rtcOccluded8); }});
+  modes.push_back({name + ", streams of 64, coherent", [&] { return embree.stream(rays, true); }});
+  modes.push_back({name + ", single", [&] { return embree.single(rays, false); }});
+}
+
+double fastest(const std::vector<Mode>& modes, const std::string& prefix) {
+  double best = 0.0;
+  for (const Mode& mode : modes) {
+    if (mode.name.starts_with(prefix)) best = std::max(best, mode.best.mrays);
+  }
+  return best;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string path = argc > 1 ? argv[1] : "/usr/share/glmark2/models/bunny.obj";
   const int ray_count = argc > 2 ? std::atoi(argv[2]) : 2048;
-  const mesh::TriangleMesh mesh = read_obj(path);
-  const Rays rays = make_rays(mesh, static_cast<std::size_t>(ray_count));
-  fmt::print("{}: {} vertices, {} triangles; {} rays, {} threads\n\n{:<44} {:<13} {}   {}\n", path,
-             mesh.vertex_count(), mesh.triangle_count(), rays.by_vertex.size(), thread_count(), "",
-             "order", "Mrays/s", "blocked");
-  // Ours between Embree's, so that a machine whose speed drifts treats both alike.
-  double robust = 0.0, fast = 0.0, engine = 0.0, bake = 0.0;
-  const auto measure_ours = [&] {
-    const Rate rate = measure_engine(mesh, rays.by_vertex);
-    print_row("prtkit ray::Engine (robust)", "by vertex", rate, rays.by_vertex.size());
-    engine = std::max(engine, rate.mrays);
-    const double baked = measure_bake(mesh, ray_count);
-    fmt::print("{:<44} {:<13} {:7.2f}\n", "prtkit transfer, shadowed, 5 bands", "whole model",
-               baked);
-    bake = std::max(bake, baked);
-  };
-  measure_ours();
-  for (RTCBuildQuality quality : {RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_HIGH}) {
-    robust = std::max(robust, sweep(mesh, rays, true, quality));
-    fast = std::max(fast, sweep(mesh, rays, false, quality));
-    measure_ours();
+  const mesh::TriangleMesh mesh = read_model(path);
+  const std::vector<Ray> rays =
+      make_rays(mesh, transfer::make_directions(2 * static_cast<std::size_t>(ray_count), 1));
+  const std::vector<RTCRay> bare = embree_rays(rays);
+  const auto engine = ray::make_embree_engine({mesh.positions, mesh.indices});
+  const BareEmbree robust(mesh, true, RTC_BUILD_QUALITY_MEDIUM);
+  const BareEmbree fast(mesh, false, RTC_BUILD_QUALITY_MEDIUM);
+  const BareEmbree fast_high(mesh, false, RTC_BUILD_QUALITY_HIGH);
+  std::vector<Mode> modes;
+  modes.push_back({"prtkit ray::Engine", [&] { return measure_engine(*engine, rays); }});
+  modes.push_back({"prtkit transfer, 5 bands, whole model", [&] {
+                     return Rate{measure_bake(mesh, ray_count), 0};
+                   }});
+  add_modes("Embree robust", robust, bare, modes);
+  add_modes("Embree fast", fast, bare, modes);
+  add_modes("Embree fast, high quality", fast_high, bare, modes);
+  fmt::print("{}: {} vertices, {} triangles; {} rays, {} threads\n\n{:<58} Mrays/s   blocked\n",
+             path, mesh.vertex_count(), mesh.triangle_count(), rays.size(), thread_count(), "");
+  run_interleaved(modes);
+  for (const Mode& mode : modes) {
+    fmt::print("{:<58} {:7.2f}   {:6.3f}%\n", mode.name, mode.best.mrays,
+               100.0 * static_cast<double>(mode.best.blocked) / static_cast<double>(rays.size()));
   }
   fmt::print("\n{:<32} {:>16} {:>16}\n", "", "ray::Engine", "transfer");
-  for (const auto& [name, best] :
-       {std::pair("fastest robust", robust), std::pair("fastest", fast)}) {
-    fmt::print("of Embree's {:<20} {:>15.0f}% {:>15.0f}%\n", name, 100.0 * engine / best,
-               100.0 * bake / best);
+  for (const char* of : {"Embree robust", "Embree"}) {
+    const double best = fastest(modes, of);
+    fmt::print("of the fastest {:<17} {:>15.0f}% {:>15.0f}%\n", of,
+               100.0 * modes[0].best.mrays / best, 100.0 * modes[1].best.mrays / best);
   }
 }

@@ -153,6 +153,34 @@ class EmbreeEngine final : public Engine {
     }
   }
 
+  void occluded_from(const Vec3& origin, const PlanarDirections& directions,
+                     std::span<const std::uint32_t> chosen,
+                     std::span<std::uint8_t> occluded) const override {
+    if (chosen.empty()) return;
+    const FlushDenormals flush;
+    RTCIntersectContext context = make_context(Coherence::coherent);
+    alignas(64) RTCRay16 packet;
+    alignas(64) int valid[kWidth];
+    const Ray first{origin, 0.0f, {}, std::numeric_limits<float>::infinity()};
+    load_packet({&first, 1}, packet, valid);
+    std::fill_n(valid, kWidth, -1);
+    for (std::size_t i = 0; i < chosen.size(); i += kWidth) {
+      const std::size_t count = std::min(kWidth, chosen.size() - i);
+      if (count < kWidth) std::fill(valid + count, valid + kWidth, 0);
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        const std::uint32_t d = chosen[i + lane];
+        packet.dir_x[lane] = directions.x[d];
+        packet.dir_y[lane] = directions.y[d];
+        packet.dir_z[lane] = directions.z[d];
+      }
+      std::fill_n(packet.tfar, kWidth, first.t_far);
+      rtcOccluded16(valid, scene_.get(), &context, &packet);
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        occluded[i + lane] = packet.tfar[lane] < 0.0f;
+      }
+    }
+  }
+
  private:
   void add_geometry(const Triangles& triangles) {
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -44,6 +44,11 @@ struct Triangles {
   std::span<const std::uint32_t> indices;  ///< three a triangle
 };
 
+/// Directions as three lists of their coordinates.
+struct PlanarDirections {
+  std::span<const float> x, y, z;
+};
+
 class Engine {
  public:
   virtual ~Engine() = default;
@@ -53,6 +58,12 @@ class Engine {
   /// occluded[i] = 1 when anything, front or back, lies in (t_near, t_far], else 0.
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
                         Coherence coherence) const = 0;
+  /// Many rays from one origin, the chosen ones (numbers) of a list of directions: occluded[i] = 1
+  /// when anything lies along the i-th chosen one, t > 0, else 0. Neighbours in `chosen` should be
+  /// neighbours on the sphere. occluded.size() >= chosen.size().
+  virtual void occluded_from(const Vec3& origin, const PlanarDirections& directions,
+                             std::span<const std::uint32_t> chosen,
+                             std::span<std::uint8_t> occluded) const = 0;
 };
 
 /// Embree 3, robust mode: tight along edges; of rays aimed at a vertex to the last bit a few in a

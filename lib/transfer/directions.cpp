@@ -1,12 +1,14 @@
 #include "transfer/directions.h"
 
+#include <ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "core/random.h"
-#include "transfer/spatial_order.h"
 
 namespace prt::transfer {
 
@@ -26,6 +28,25 @@ Imath::M33d random_rotation(std::uint64_t seed) {
           2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
 
+constexpr std::size_t kGroup = 16;  // directions of a packet
+
+/// Sorts so that runs of kGroup, 2 kGroup, 4 kGroup … are compact: halves of halves, each cut
+/// across its longest side.
+void sort_compactly(std::span<Vec3> set) {
+  if (set.size() <= kGroup) return;
+  Imath::Box3f box;
+  for (const Vec3& d : set) box.extendBy(d);
+  const auto axis = static_cast<int>(box.majorAxis());
+  const std::size_t half = (set.size() / kGroup + 1) / 2 * kGroup;
+  std::nth_element(set.begin(), set.begin() + static_cast<std::ptrdiff_t>(half), set.end(),
+                   [&](const Vec3& a, const Vec3& b) {
+                     return std::pair(a[axis], a[(axis + 1) % 3]) <
+                            std::pair(b[axis], b[(axis + 1) % 3]);
+                   });
+  sort_compactly(set.first(half));
+  sort_compactly(set.subspan(half));
+}
+
 }  // namespace
 
 Directions make_directions(std::size_t count, std::uint64_t seed) {
@@ -39,11 +60,12 @@ Directions make_directions(std::size_t count, std::uint64_t seed) {
     const double phi = 2.0 * std::numbers::pi * turns;
     set[i] = Vec3((Vec3d(r * std::cos(phi), r * std::sin(phi), z) * rotation).normalized());
   }
+  sort_compactly(set);
   Directions directions;
-  for (std::uint32_t i : spatial_order(set)) {
-    directions.x.push_back(set[i].x);
-    directions.y.push_back(set[i].y);
-    directions.z.push_back(set[i].z);
+  for (const Vec3& d : set) {
+    directions.x.push_back(d.x);
+    directions.y.push_back(d.y);
+    directions.z.push_back(d.z);
   }
   return directions;
 }

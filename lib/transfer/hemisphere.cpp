@@ -3,7 +3,7 @@
 namespace prt::transfer {
 
 Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
-    : index_(index), directions_(directions) {
+    : index_(index), directions_(directions), origin_(0.0f) {
   const std::size_t count = directions.count();
   cosines_.resize(count);
   above_.resize(count);
@@ -17,8 +17,8 @@ Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
 // made without branches, which would be mispredicted: what does not belong is overwritten.
 void Hemisphere::trace(std::size_t vertex) {
   const std::size_t count = aim(vertex);
-  index_.engine().occluded({rays_.data(), count}, {occluded_.data(), count},
-                           ray::Coherence::coherent);
+  index_.engine().occluded_from(origin_, {directions_.x, directions_.y, directions_.z},
+                                {above_.data(), count}, occluded_);
   blocked_count_ = visible_count_ = 0;
   for (std::size_t i = 0; i < count; ++i) {
     blocked_[blocked_count_] = visible_[visible_count_] = {above_[i], cosines_[above_[i]]};
@@ -28,12 +28,8 @@ void Hemisphere::trace(std::size_t vertex) {
 }
 
 std::size_t Hemisphere::aim(std::size_t vertex) {
-  const Vec3 origin = index_.ray_origin(vertex);
+  origin_ = index_.ray_origin(vertex);
   const std::size_t count = find_above(index_.normal(vertex));
-  for (std::size_t i = 0; i < count; ++i) {
-    rays_[i].origin = origin;
-    rays_[i].direction = directions_[above_[i]];
-  }
   rays_cast_ += count;
   return count;
 }
@@ -54,6 +50,7 @@ std::size_t Hemisphere::find_above(const Vec3& normal) {
 std::span<const ray::Hit> Hemisphere::hits() {
   hits_.resize(blocked_count_);
   for (std::size_t i = 0; i < blocked_count_; ++i) {
+    rays_[i].origin = origin_;
     rays_[i].direction = directions_[blocked_[i].row];
   }
   index_.engine().closest_hit({rays_.data(), blocked_count_}, hits_, ray::Coherence::coherent);
@@ -64,6 +61,10 @@ std::span<const ray::Hit> Hemisphere::hits() {
 std::span<const ray::Hit> Hemisphere::trace_closest(std::size_t vertex) {
   const std::size_t count = aim(vertex);
   hits_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    rays_[i].origin = origin_;
+    rays_[i].direction = directions_[above_[i]];
+  }
   index_.engine().closest_hit({rays_.data(), count}, hits_, ray::Coherence::coherent);
   return hits_;
 }

@@ -35,7 +35,7 @@ class Hemisphere {
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
-  /// Makes the rays of the directions above the vertex's horizon; returns their number.
+  /// Sets origin_, and cosines_ and above_ as find_above does; counts the rays to be cast.
   std::size_t aim(std::size_t vertex);
   /// Fills cosines_ of all directions and above_ with those above the horizon; returns their
   /// number.
@@ -43,6 +43,7 @@ class Hemisphere {
 
   const SceneIndex& index_;
   const Directions& directions_;
+  Vec3 origin_;
   std::vector<float> cosines_;
   std::vector<std::uint32_t> above_;
   std::vector<ray::Ray> rays_;
