@@ -1,6 +1,7 @@
 // The directions of the quadrature over the sphere, shared by all vertices: a spherical Fibonacci
 // set [Marques et al. 2013, Spherical Fibonacci Point Sets for Illumination Integrals], turned at
-// random by the seed, in an order in which neighbours in the list are neighbours on the sphere.
+// random by the seed, in an order in which runs of 16 are compact on the sphere (rays go to the
+// engine 16 by 16) and neighbours in the list are neighbours there.
 #pragma once
 
 #include <cstddef>

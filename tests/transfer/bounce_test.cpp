@@ -266,7 +266,9 @@ TEST(Bounce, AgreesWithAPlainImplementation) {
       // A ray that grazes an edge may go either way; it weighs 4 pi / 256 · Y / pi at most.
       EXPECT_NEAR(signal.values[i], plain[i], 0.04) << i;
     }
-    EXPECT_LT(different, plain.size() / 25);  // values of four vertices
+    // Three vertices have rays along edges of the boxes that the last bit decides, single precision
+    // otherwise than double.
+    EXPECT_LE(different, 3u * 75u);
   }
 }
 
