@@ -226,7 +226,7 @@ void run_interleaved(std::vector<Mode>& modes) {
   }
 }
 
-/// Modes of one scene; packets of 4 and incoherent flags were never the fastest.
+/// Modes of one scene. Packets of 4 and other orders of the rays were never the fastest.
 void add_modes(const std::string& name, const BareEmbree& embree, const std::vector<RTCRay>& rays,
                std::vector<Mode>& modes) {
   modes.push_back({name + ", packets of 16, coherent",
