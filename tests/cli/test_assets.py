@@ -1,5 +1,6 @@
 """Makefile.assets as a user's own project includes it."""
 
+import pathlib
 import subprocess
 import unittest
 
@@ -12,8 +13,8 @@ class Assets(ToolTest):
             ["make", "-C", self.folder, f"BIN={BIN}", "PREVIEW_SIZE=64x64", *arguments],
             capture_output=True, text=True, timeout=300)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        return [line.split("/")[-1].split()[0] for line in result.stdout.splitlines()
-                if f"{BIN}/prt-" in line]
+        return [pathlib.Path(line.split()[0]).name for line in result.stdout.splitlines()
+                if line.startswith(f"{BIN}/prt-")]
 
     def setUp(self):
         super().setUp()
