@@ -196,6 +196,14 @@ class DiffuseBake {
     return blocked;
   }
 
+  /// The larger the model, the less of the 500 MB that diffuse.h promises its tree leaves for hits.
+  std::size_t hit_bytes() const {
+    constexpr std::size_t kTreeBytesPerVertex = 400, kShared = std::size_t{416} << 20,
+                          kLeast = std::size_t{16} << 20;
+    const std::size_t tree = kTreeBytesPerVertex * index_.vertex_count();
+    return std::min(options_.hit_bytes, tree + kLeast < kShared ? kShared - tree : kLeast);
+  }
+
   /// Bounces act on each coefficient alone, so they go through as many at a time as memory allows.
   void bounce(const BuriedRepair& repair, std::vector<float> blocked) {
     if (index_.vertex_count() == 0) return;
@@ -204,7 +212,7 @@ class DiffuseBake {
         options_.bounce_ray_count > 0 ? options_.bounce_ray_count : (options_.ray_count + 3) / 4;
     Reflection reflection(index_,
                           make_directions(2 * static_cast<std::size_t>(rays), options_.seed),
-                          signal_.channel_count, std::move(blocked), options_.hit_bytes);
+                          signal_.channel_count, std::move(blocked), hit_bytes());
     {
       Progress progress("bounce rays", index_.vertex_count(), "vertices");
       stats_.rays_cast += reflection.trace(progress);

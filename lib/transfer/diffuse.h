@@ -42,7 +42,7 @@ struct DiffuseOptions {
   std::uint64_t seed = 1;  ///< turns the set of directions
   /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
   bool closed_form = true;
-  std::size_t hit_bytes = std::size_t{320} << 20;    ///< for hits kept from bounce to bounce
+  std::size_t hit_bytes = std::size_t{320} << 20;    ///< for hits kept between bounces, at most
   std::size_t bounce_bytes = std::size_t{64} << 20;  ///< for the two fields of a bounce
 };
 
@@ -64,7 +64,8 @@ struct DiffuseStats {
 };
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.
-/// Beyond input, output and the ray engine's tree, memory stays under 500 MB. Throws Error (usage)
+/// Beyond input and output, memory stays under 500 MB up to a million vertices; the ray engine's
+/// tree, some 350 bytes a vertex, is what grows from there. Throws Error (usage)
 /// on options out of range and Error (bad_input) on positions or normals that are not finite.
 signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
                                        DiffuseStats& stats);
