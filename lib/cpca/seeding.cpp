@@ -65,9 +65,11 @@ std::size_t draw(std::span<const double> weights, std::span<const double> block_
 using Lower = double(const float* points, std::size_t stride, const float* mean, double* distances,
                      std::size_t count);
 
-[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma,prefer-vector-width=512")]] double lower_avx512(
-    const float* points, std::size_t stride, const float* mean, double* distances,
-    std::size_t count) {
+[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] double lower_avx512(const float* points,
+                                                                          std::size_t stride,
+                                                                          const float* mean,
+                                                                          double* distances,
+                                                                          std::size_t count) {
   return lower_distances(points, stride, mean, distances, count);
 }
 
