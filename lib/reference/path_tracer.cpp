@@ -47,7 +47,10 @@ Result trace(const mesh::Scene& scene, const camera::Camera& camera,
   result.build_seconds = seconds_since(build_start);
 
   const auto trace_start = std::chrono::steady_clock::now();
-  const Job job{surfaces, *engine, camera, illumination, options, result.sample_count};
+  camera::Camera centred = camera;
+  centred.eye -= surfaces.centre();
+  centred.target -= surfaces.centre();
+  const Job job{surfaces, *engine, centred, illumination, options, result.sample_count};
   const int columns = (options.width + kTileSize - 1) / kTileSize;
   const int rows = (options.height + kTileSize - 1) / kTileSize;
   std::atomic<std::uint64_t> rays_cast{0};

@@ -5,9 +5,9 @@
 // weights it. Rays leave the flat triangle on the side of that normal; the ones that dip below the
 // triangle's plane hit it, as in the bake they hit a vertex's own faces. Anything in the way
 // blocks, seen from the front or from behind. What is hit from the front reflects; what is hit from
-// behind reflects nothing (black), unless its material is double-sided. `bounce_count`
-// interreflections are followed, exactly: 0 is direct light only, and no path is cut short at
-// random.
+// behind reflects nothing (black), even where the material is double-sided: a vertex has one normal
+// and transfer knows its side alone. `bounce_count` interreflections are followed, exactly: 0 is
+// direct light only, and no path is cut short at random.
 //
 // The estimator. Directions are drawn by the cosine, one ray a vertex of the path. Peaked lights
 // (whole maps) are sampled as well, and both are combined by the balance heuristic [Veach 1997

@@ -17,7 +17,7 @@ constexpr int kBatchSampleCount = 16;  ///< samples of each pixel of a tile that
 struct Job {
   const SurfaceLookup& surfaces;
   const ray::Engine& engine;
-  const camera::Camera& camera;
+  const camera::Camera& camera;  // relative to the centre of the surfaces
   const Illumination& illumination;
   const Options& options;
   int sample_count;

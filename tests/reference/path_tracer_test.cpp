@@ -236,16 +236,38 @@ TEST(PathTracer, BouncesInAColouredCornerMatchRadiosity) {
   }
 }
 
-TEST(PathTracer, BackFacesBlockAndAreBlackUnlessDoubleSided) {
+TEST(PathTracer, BackFacesBlockAndAreBlackEvenWhenDoubleSided) {
   for (const bool double_sided : {false, true}) {
     mesh::Scene scene;
     add_quad(scene, {-1.0f, 0.0f, 1.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -2.0f},
              add_material(scene, Vec3(0.5f), double_sided));
     const auto below = look({0.0f, -3.0f, 1.0f}, {0.0f, 0.0f, 0.0f}, 20.0f);
     const Result result = trace(scene, below, kWhite, small(16, 16, 1));
-    for_covered(result, [&](int x, int y) {
-      ASSERT_NEAR(result.radiance.at(x, y)[0], double_sided ? 0.5f : 0.0f, 1e-5f);
-    });
+    for_covered(result, [&](int x, int y) { ASSERT_EQ(result.radiance.at(x, y)[0], 0.0f); });
+  }
+}
+
+// Of a tilted triangle alone nothing hides the sky, wherever it stands and however large it is.
+TEST(PathTracer, ATriangleOfAnySizeAndPlaceNeverHidesItsOwnSky) {
+  for (const float size : {1e-6f, 1.0f, 1e4f}) {
+    for (const float distance : {0.0f, 5000.0f}) {
+      if (size < 1.0f && distance > 0.0f) continue;  // smaller than the numbers there resolve
+      const Vec3 offset(distance, -distance, 0.5f * distance);
+      mesh::Scene scene;
+      mesh::Primitive primitive;
+      primitive.material = add_material(scene, Vec3(1.0f));
+      const Vec3 a(size, 0.3f * size, 0.1f * size), b(-0.2f * size, 0.7f * size, -0.9f * size);
+      primitive.mesh.positions = {offset, offset + a, offset + b};
+      primitive.mesh.normals.assign(3, (a / size).cross(b / size).normalized());
+      primitive.mesh.indices = {0, 1, 2};
+      scene.primitives.push_back(primitive);
+      const Vec3 middle = offset + (a + b) / 3.0f;
+      const auto camera = look(middle + primitive.mesh.normals[0] * (2.0f * size), middle, 30.0f);
+      const Result result = trace(scene, camera, kWhite, small(64, 64, 1));
+      for_covered(result, [&](int x, int y) {
+        ASSERT_NEAR(result.radiance.at(x, y)[0], 1.0f, 1e-5f) << size << ", " << distance;
+      });
+    }
   }
 }
 
