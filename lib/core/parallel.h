@@ -1,6 +1,6 @@
 // Parallel loops over fixed blocks. Block limits depend on count and block size alone, never on the
 // number of threads, so a caller that writes each block's result to its own place and adds up in
-// block order gets the same bytes on any machine.
+// block order gets the same bytes for any number of threads (of one instruction set, core/cpu.h).
 #pragma once
 
 #include <cstddef>

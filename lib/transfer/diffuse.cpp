@@ -21,6 +21,7 @@ namespace prt::transfer {
 namespace {
 
 constexpr int kMaxRayCount = 1 << 17;
+constexpr int kMaxBounceRayCount = 1 << 14;  // a block's hits stay under 17 MB
 
 class Stopwatch {
  public:
@@ -42,7 +43,7 @@ void check_options(const DiffuseOptions& options) {
   check("band count", options.band_count, 1, sh::kMaxBandCount);
   check("ray count", options.ray_count, 1, kMaxRayCount);
   check("bounce count", options.bounce_count, 0, 1000);
-  check("bounce ray count", options.bounce_ray_count, 0, kMaxRayCount);
+  check("bounce ray count", options.bounce_ray_count, 0, kMaxBounceRayCount);
   if (options.bounce_count > 0 && !options.shadowed) {
     throw Error(ErrorKind::usage, "bounces need shadows",
                 {.advice = "Leave out one of unshadowed and bounces."});
@@ -208,8 +209,9 @@ class DiffuseBake {
   void bounce(const BuriedRepair& repair, std::vector<float> blocked) {
     if (index_.vertex_count() == 0) return;
     const Stopwatch watch;
-    const int rays =
-        options_.bounce_ray_count > 0 ? options_.bounce_ray_count : (options_.ray_count + 3) / 4;
+    const int rays = options_.bounce_ray_count > 0
+                         ? options_.bounce_ray_count
+                         : std::min((options_.ray_count + 3) / 4, kMaxBounceRayCount);
     Reflection reflection(index_,
                           make_directions(2 * static_cast<std::size_t>(rays), options_.seed),
                           signal_.channel_count, std::move(blocked), hit_bytes());

@@ -33,11 +33,12 @@ namespace prt::transfer {
 enum class ChannelMode { automatic, one, three };
 
 struct DiffuseOptions {
-  int band_count = 5;        ///< of the light, 1 to sh::kMaxBandCount
-  int ray_count = 2048;      ///< per vertex, over its hemisphere (on average)
-  int bounce_count = 0;      ///< of interreflection; needs shadowed
-  int bounce_ray_count = 0;  ///< per vertex, for what is reflected; 0: a quarter of ray_count
-  bool shadowed = true;      ///< false: no rays, the closed form
+  int band_count = 5;    ///< of the light, 1 to sh::kMaxBandCount
+  int ray_count = 2048;  ///< per vertex, over its hemisphere (on average)
+  int bounce_count = 0;  ///< of interreflection; needs shadowed
+  int bounce_ray_count =
+      0;  ///< per vertex, for what is reflected; at most 16384; 0: a quarter of ray_count
+  bool shadowed = true;  ///< false: no rays, the closed form
   ChannelMode channels = ChannelMode::automatic;
   std::uint64_t seed = 1;  ///< turns the set of directions
   /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
