@@ -34,6 +34,16 @@ bool has_scheme(std::string_view name) {
   });
 }
 
+/// With links followed.
+bool is_inside(const std::filesystem::path& target, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto base = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
+  if (error) return false;
+  const auto real = std::filesystem::weakly_canonical(target.empty() ? "." : target, error);
+  if (error) return false;
+  return std::mismatch(base.begin(), base.end(), real.begin(), real.end()).first == base.end();
+}
+
 }  // namespace
 
 std::filesystem::path resolve_reference(const std::filesystem::path& file,
@@ -54,7 +64,9 @@ std::filesystem::path resolve_reference(const std::filesystem::path& file,
   if (has_scheme(name)) reject("name with a scheme");
   const std::filesystem::path path(name);
   if (std::find(path.begin(), path.end(), "..") != path.end()) reject("path with \"..\"");
-  return file.parent_path() / path;
+  const std::filesystem::path target = file.parent_path() / path;
+  if (!is_inside(target, file.parent_path())) reject("link out of the folder");
+  return target;
 }
 
 }  // namespace prt

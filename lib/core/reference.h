@@ -11,7 +11,8 @@ enum class Escapes { none, percent };  ///< glTF's URIs are percent-encoded, nam
 
 /// The path of what `file` names by `reference`. Throws Error (bad_input) when the name is empty,
 /// absolute, has a scheme (or a drive letter) or a ".." part, whether written plainly, with
-/// backslashes or percent-encoded. The test is lexical: links inside the folder are followed.
+/// backslashes or percent-encoded. Links are followed as long as they lead to something in
+/// the same folder.
 std::filesystem::path resolve_reference(const std::filesystem::path& file,
                                         std::string_view reference, Escapes escapes);
 

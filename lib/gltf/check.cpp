@@ -16,6 +16,10 @@ namespace {
 
 // An accessor without a view is all zeros: nothing in the file bounds its count.
 constexpr std::size_t kMaxZeroCount = std::size_t{1} << 22;
+constexpr std::size_t kMaxZeroBytes = std::size_t{1} << 28;  // of all of them
+
+// Of meshes that more than one node uses, once for each.
+constexpr std::size_t kMaxCopiedJson = std::size_t{1} << 26;
 
 constexpr std::size_t kMaxTexcoordSets = 1 << 16;
 
@@ -147,6 +151,7 @@ void check_sparse(const State& state, const Json& accessor, std::size_t size, st
 
 void check_accessors(const State& state) {
   const Json& accessors = array_of(state.root, "accessors");
+  std::size_t zero_bytes = 0;
   for (std::size_t i = 0; i < accessors.size(); ++i) {
     const Json& accessor = accessors[i];
     const Where where = state.where("accessor", i);
@@ -160,9 +165,9 @@ void check_accessors(const State& state) {
     const std::size_t size = element_bytes(static_cast<int>(component_type), type_code(type));
     if (accessor.contains("bufferView")) {
       check_range(state, accessor, count, size, component, where);
-    } else if (count > kMaxZeroCount) {
+    } else if (count > kMaxZeroCount || (zero_bytes += count * size) > kMaxZeroBytes) {
       reject(where, "too many elements without data", std::to_string(count),
-             fmt::format("at most {}", kMaxZeroCount));
+             fmt::format("at most {}, and {} bytes in all", kMaxZeroCount, kMaxZeroBytes));
     }
     check_sparse(state, accessor, size, component, where);
   }
@@ -190,14 +195,14 @@ void check_primitive(const State& state, const Json& primitive, const Where& whe
   if (!primitive.is_object()) reject(where, "not an object");
   const Json* attributes = find(primitive, "attributes");
   if (!attributes || !attributes->is_object()) reject(where, "no attributes");
+  if (!attributes->contains("POSITION")) reject(where, "no positions");
   check_attributes(state, *attributes, std::nullopt, where);
   optional_index(primitive, "indices", state.count("accessors"), where);
   optional_index(primitive, "material", state.count("materials"), where);
   optional_index(primitive, "mode", 7, where);
   const Json& targets = array_of(primitive, "targets");
   if (!targets.is_array()) reject(where, "targets are no array");
-  std::optional<std::size_t> count;
-  if (!attributes->empty()) count = accessor_count(state, attributes->begin()->get<std::size_t>());
+  const std::size_t count = accessor_count(state, (*attributes)["POSITION"].get<std::size_t>());
   for (const Json& target : targets) check_attributes(state, target, count, where);
 }
 
@@ -242,7 +247,30 @@ void check_images(const State& state) {
   }
 }
 
-// Nodes may share a mesh and primitives their accessors: a small file can describe a huge scene.
+// Nodes may share a mesh: importing gives each its own. Counted before anything is listed or
+// copied.
+void check_instances(const State& state) {
+  std::vector<std::size_t> uses(state.count("meshes"));
+  for (const Json& node : array_of(state.root, "nodes")) {
+    if (const Json* mesh = find(node, "mesh")) ++uses[mesh->get<std::size_t>()];
+  }
+  std::size_t primitives = 0, copied = 0;
+  for (std::size_t m = 0; m < uses.size(); ++m) {
+    const Json& mesh = state.element("meshes", m);
+    primitives = checked_add(primitives, checked_multiply(uses[m], mesh["primitives"].size()));
+    if (uses[m] > 1) copied = checked_add(copied, checked_multiply(uses[m], mesh.dump().size()));
+  }
+  if (primitives > state.limits.max_primitive_count) {
+    reject({state.file, "nodes"}, "too many primitives", std::to_string(primitives),
+           fmt::format("at most {}", state.limits.max_primitive_count));
+  }
+  if (copied > kMaxCopiedJson) {
+    reject({state.file, "nodes"}, "meshes used too often", fmt::format("{} bytes of JSON", copied),
+           fmt::format("at most {}", kMaxCopiedJson));
+  }
+}
+
+// Primitives may share their accessors, too: a small file can describe a huge scene.
 void check_size(const State& state) {
   const Model model = read_model(state);
   std::size_t total = 0;
@@ -271,6 +299,7 @@ void check_document(const State& state) {
   check_materials(state);
   check_images(state);
   check_nodes(state);
+  check_instances(state);
   check_size(state);
 }
 

@@ -66,7 +66,16 @@ void check_nodes(const State& state) {
     }
   }
   for (std::size_t i = 0; i < state.count("scenes"); ++i) {
-    read_nodes(state, state.element("scenes", i), "nodes", state.where("scene", i));
+    std::vector<bool> listed(count);
+    const Where where = state.where("scene", i);
+    for (const std::size_t node : read_nodes(state, state.element("scenes", i), "nodes", where)) {
+      if (listed[node] || parent[node] != kNone) {
+        throw_bad_input(
+            "a node that the scene shows twice, or that has a parent",
+            {.file = state.file, .element = where.element, .found = fmt::format("node {}", node)});
+      }
+      listed[node] = true;
+    }
   }
   if (state.count("scenes") > 0) {
     optional_index(state.root, "scene", state.count("scenes"), {state.file, "default scene"});

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
 constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
-constexpr int kMaxJsonDepth = 128;
+constexpr std::size_t kMaxJsonDepth = 128;
+constexpr std::size_t kMaxKeys = 4096;
 
 std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t offset) {
   std::uint32_t value;
@@ -64,9 +65,13 @@ Chunks split_glb(std::span<const std::byte> bytes, const std::string& file) {
   return chunks;
 }
 
-// Our JSON library parses any depth, but writing and destroying recurse.
-void check_depth(std::string_view text, const std::string& file) {
-  int depth = 0;
+// Our JSON library parses any depth, but writing and destroying recurse; and it looks for a key of
+// an object in one member after the other.
+void check_structure(std::string_view text, const std::string& file) {
+  const auto reject = [&](const char* what, std::size_t most) {
+    throw_bad_input(what, {.file = file, .expected = fmt::format("at most {}", most)});
+  };
+  std::vector<std::size_t> key_counts;  // of the objects, and arrays, around this place
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -76,19 +81,19 @@ void check_depth(std::string_view text, const std::string& file) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) {
-        throw_bad_input("JSON nested too deeply",
-                        {.file = file, .expected = fmt::format("at most {}", kMaxJsonDepth)});
-      }
-    } else if (c == '}' || c == ']') {
-      --depth;
+      key_counts.push_back(0);
+      if (key_counts.size() > kMaxJsonDepth) reject("JSON nested too deeply", kMaxJsonDepth);
+    } else if (c == ':' && !key_counts.empty()) {
+      if (++key_counts.back() > kMaxKeys) reject("too many keys in a JSON object", kMaxKeys);
+    } else if ((c == '}' || c == ']') && !key_counts.empty()) {
+      key_counts.pop_back();
     }
   }
 }
 
 Json parse_json(std::string_view text, const std::string& file) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  check_depth(text, file);
+  check_structure(text, file);
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::exception& error) {

@@ -17,8 +17,9 @@ namespace prt::gltf {
 /// What a hostile file may not exceed.
 struct Limits {
   std::size_t max_file_bytes = std::size_t{4} << 30;
-  std::size_t max_image_pixels = image::kMaxPixels;
+  std::size_t max_image_pixels = image::kMaxPixels;  ///< of the images that are decoded, in all
   std::size_t max_node_depth = 256;
+  std::size_t max_primitive_count = 1 << 16;  ///< counted once for each node that shows it
   std::size_t max_element_count = std::size_t{1} << 30;  ///< attribute values and indices, in all
 };
 

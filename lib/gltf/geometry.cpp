@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "gltf/accessor.h"
 
@@ -96,6 +98,24 @@ mesh::TriangleMesh read_geometry(const Model& model, const tinygltf::Primitive& 
   mesh.indices =
       triangulate(read_corners(model, primitive, mesh.vertex_count(), where), primitive.mode);
   return mesh;
+}
+
+void check_transform(const Matrix4& world_from_local, const mesh::TriangleMesh& mesh,
+                     const Where& where) {
+  const auto reject = [&](const char* what) {
+    throw_bad_input(what, {.file = where.file,
+                           .element = where.element,
+                           .advice = "Mend or remove the nodes that show it."});
+  };
+  const double determinant = Imath::M44d(world_from_local).determinant();
+  if (determinant == 0.0 || !std::isfinite(determinant)) {
+    reject("a transform that flattens the mesh");
+  }
+  for (const Vec3& p : mesh.positions) {
+    if (!is_finite(transform_point(world_from_local, p))) {
+      reject("a transform that moves a vertex out of the range of floats");
+    }
+  }
 }
 
 void write_geometry(State& state, Json& primitive, const mesh::TriangleMesh& mesh) {

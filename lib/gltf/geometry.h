@@ -15,4 +15,9 @@ mesh::TriangleMesh read_geometry(const Model& model, const tinygltf::Primitive& 
 /// Writes the mesh's attributes and indices into new accessors and makes `primitive` use them.
 void write_geometry(State& state, Json& primitive, const mesh::TriangleMesh& mesh);
 
+/// Throws Error (bad_input) when the transform flattens what it moves, or takes a position of the
+/// mesh out of the range of floats.
+void check_transform(const Matrix4& world_from_local, const mesh::TriangleMesh& mesh,
+                     const Where& where);
+
 }  // namespace prt::gltf

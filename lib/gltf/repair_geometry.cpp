@@ -130,6 +130,7 @@ class PrimitiveRepair {
     ImportedMesh imported;
     std::vector<std::uint32_t> source = mesh::repair(mesh, options_.repair, imported.repair);
     if (mesh.triangle_count() == 0) return imported;
+    check_transform(use_.world_from_local, mesh, where_);
     const bool same = mesh.triangle_count() == triangle_count && mesh.vertex_count() == vertices &&
                       mesh.normals == normals;
     if (options_.max_edge > 0.0f) {

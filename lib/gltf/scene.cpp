@@ -1,5 +1,6 @@
 // Document::scene: the default scene's triangles in world space.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -27,7 +28,10 @@ mesh::Wrap read_wrap(int code) {
 class MaterialReader {
  public:
   MaterialReader(const Model& model, mesh::Scene& scene)
-      : model_(model), scene_(scene), image_of_source_(model.state.count("images"), -1) {}
+      : model_(model),
+        scene_(scene),
+        image_of_view_(model.bufferViews.size(), -1),
+        pixels_left_(model.state.limits.max_image_pixels) {}
 
   void read_all() {
     for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(read(i));
@@ -72,43 +76,45 @@ class MaterialReader {
   }
 
   int image_number(std::size_t source) {
-    int& number = image_of_source_[source];
-    if (number >= 0) return number;
     const State& state = model_.state;
     const int view = state.element("images", source).at("bufferView").get<int>();
+    int& number = image_of_view_[static_cast<std::size_t>(view)];
+    if (number >= 0) return number;
     number = static_cast<int>(scene_.images.size());
-    scene_.images.push_back(image::read_image(model_.view_bytes(view),
-                                              fmt::format("{}: image {}", state.file, source),
-                                              state.limits.max_image_pixels));
+    scene_.images.push_back(image::read_image(
+        model_.view_bytes(view), fmt::format("{}: image {}", state.file, source), pixels_left_));
+    pixels_left_ -= scene_.images.back().pixel_count();
     return number;
   }
 
   const Model& model_;
   mesh::Scene& scene_;
-  std::vector<int> image_of_source_;
+  std::vector<int> image_of_view_;  // images may share a view
+  std::size_t pixels_left_;
 };
 
-void move_to_world(mesh::TriangleMesh& mesh, const Matrix4& world_from_local, const Where& where) {
+void move_to_world(mesh::TriangleMesh& mesh, const Matrix4& world_from_local) {
   if (world_from_local == Matrix4()) return;
-  const double determinant = Imath::M44d(world_from_local).determinant();
-  if (determinant == 0.0 || !std::isfinite(determinant)) {
-    throw_bad_input("a transform that flattens the mesh",
-                    {.file = where.file, .element = where.element});
-  }
   // Normals are moved by the inverse transpose [glTF 2.0 §3.7.2]; what a mirror turns inside out is
   // turned back by exchanging two corners.
   const Matrix4 normal_matrix(Imath::M44d(world_from_local).inverse().transposed());
+  const bool is_mirror = Imath::M44d(world_from_local).determinant() < 0.0;
   for (Vec3& p : mesh.positions) p = transform_point(world_from_local, p);
   for (Vec3& n : mesh.normals) n = transform_vector(normal_matrix, n).normalized();
   for (Vec4& tangent : mesh.tangents) {
     const Vec3 t =
         transform_vector(world_from_local, Vec3(tangent.x, tangent.y, tangent.z)).normalized();
-    tangent = Vec4(t.x, t.y, t.z, determinant < 0.0 ? -tangent.w : tangent.w);
+    tangent = Vec4(t.x, t.y, t.z, is_mirror ? -tangent.w : tangent.w);
   }
-  if (determinant > 0.0) return;
+  if (!is_mirror) return;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
   }
+}
+
+bool has_unit_normals(const mesh::TriangleMesh& mesh) {
+  return std::all_of(mesh.normals.begin(), mesh.normals.end(),
+                     [](const Vec3& n) { return std::abs(n.length() - 1.0f) < 0.01f; });
 }
 
 void check_ready(const tinygltf::Primitive& primitive, const mesh::TriangleMesh& mesh,
@@ -124,9 +130,7 @@ void check_ready(const tinygltf::Primitive& primitive, const mesh::TriangleMesh&
   for (const Vec3& p : mesh.positions) {
     if (!is_finite(p)) reject("a position that is not finite");
   }
-  for (const Vec3& n : mesh.normals) {
-    if (!(std::abs(n.length() - 1.0f) < 0.01f)) reject("a normal that is not of unit length");
-  }
+  if (!has_unit_normals(mesh)) reject("a normal that is not of unit length");
 }
 
 }  // namespace
@@ -151,7 +155,12 @@ mesh::Scene Document::scene() const {
     primitive.name = name_of(model, use);
     primitive.mesh = read_geometry(model, from, where);
     check_ready(from, primitive.mesh, where);
-    move_to_world(primitive.mesh, use.world_from_local, where);
+    check_transform(use.world_from_local, primitive.mesh, where);
+    move_to_world(primitive.mesh, use.world_from_local);
+    if (!has_unit_normals(primitive.mesh)) {
+      throw_bad_input("a transform that leaves a normal without direction",
+                      {.file = where.file, .element = where.element});
+    }
     primitive.material = from.material;
     primitive.mesh_index = static_cast<int>(use.mesh);
     primitive.primitive_index = static_cast<int>(use.primitive);

@@ -189,11 +189,23 @@ void check_writable(const PrecomputedTransfer& transfer, std::size_t vertex_coun
   if (encoding.point_count != vertex_count) {
     fail("compressed transfer of another number of vertices", encoding.point_count, vertex_count);
   }
-  if (encoding.cluster_count > kMaxClusterCount) {
-    throw_failed("too many clusters for glTF's 16-bit attributes",
-                 {.found = std::to_string(encoding.cluster_count),
-                  .expected = fmt::format("at most {}", kMaxClusterCount),
-                  .advice = "Use fewer clusters."});
+  const struct {
+    const char* what;
+    int found, least, most;
+  } limits[] = {{"bands", transfer.band_count, 1, kMaxBandCount},
+                {"rows", transfer.row_count, 1, kMaxRowCount},
+                {"clusters", encoding.cluster_count, 1, kMaxClusterCount},
+                {"components", encoding.component_count, 0, kMaxComponentCount}};
+  for (const auto& [what, found, least, most] : limits) {
+    if (found >= least && found <= most) continue;
+    throw_failed(fmt::format("number of {} that the extension has no room for", what),
+                 {.found = std::to_string(found),
+                  .expected = fmt::format("{} to {}", least, most),
+                  .advice = fmt::format("Use fewer {}.", what)});
+  }
+  if (transfer.channel_count != 1 && transfer.channel_count != 3) {
+    throw_failed("number of channels that the extension does not have",
+                 {.found = std::to_string(transfer.channel_count), .expected = "1 or 3"});
   }
 }
 

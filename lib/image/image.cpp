@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "core/atomic_file.h"
@@ -94,6 +95,43 @@ void check_size(const OIIO::ImageSpec& spec, const std::string& name, std::size_
   }
 }
 
+/// Greatest number of pixel bytes that a stored byte can stand for; none where that is not known.
+std::optional<std::size_t> largest_expansion(const Format& format, const OIIO::ImageSpec& spec) {
+  constexpr std::size_t kRunLength = 64, kDeflate = 1032;
+  if (format.plugin == "png"sv) return kDeflate;
+  if (format.plugin == "hdr"sv) return kRunLength;
+  const std::string compression = spec.get_string_attribute("compression");
+  if (compression == "none") return 1;
+  if (compression == "rle") return kRunLength;
+  if (compression == "zip" || compression == "zips") return kDeflate;
+  return std::nullopt;
+}
+
+/// In the file, before compression.
+std::size_t bits_per_pixel(const Format& format, const OIIO::ImageSpec& spec,
+                           std::span<const std::byte> bytes) {
+  if (format.plugin == "hdr"sv) return 4 * 8;
+  if (format.plugin != "png"sv) return 8 * spec.pixel_bytes(true);
+  const auto depth = static_cast<std::size_t>(bytes[24]),
+             type = static_cast<std::size_t>(bytes[25]);
+  const bool has_palette = type & 1, has_color = type & 2, has_alpha = type & 4;
+  return depth * ((has_color && !has_palette ? 3 : 1) + has_alpha);
+}
+
+/// A small file must not make us take the memory of a huge image before its data turn out missing.
+void check_file_size(const Format& format, const OIIO::ImageSpec& spec, const std::string& name,
+                     std::span<const std::byte> bytes) {
+  const std::optional<std::size_t> expansion = largest_expansion(format, spec);
+  const std::size_t pixels =
+      static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  const std::size_t pixel_bytes = checked_multiply(pixels, bits_per_pixel(format, spec, bytes)) / 8;
+  if (expansion && pixel_bytes / *expansion > bytes.size()) {
+    throw_damaged(
+        format, name,
+        fmt::format("{} bytes for {} x {} pixels", bytes.size(), spec.width, spec.height));
+  }
+}
+
 void decode_srgb(Image& image) {
   const int colour_count = image.channel_count > 2 ? 3 : 1;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
@@ -123,6 +161,7 @@ Image decode(const Format& format, std::span<const std::byte> bytes, const std::
   input->set_ioproxy(&reader);
   if (!input->open(name, spec, config)) throw_damaged(format, name, input->geterror());
   check_size(spec, name, max_pixels);
+  check_file_size(format, spec, name, bytes);
   Image image(spec.width, spec.height, std::min(spec.nchannels, kMaxChannels));
   const bool complete =
       input->read_image(0, 0, 0, image.channel_count, OIIO::TypeDesc::FLOAT, image.pixels.data());

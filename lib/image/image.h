@@ -21,6 +21,9 @@ struct Image {
         channel_count(channels),
         pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) *
                static_cast<std::size_t>(channels)) {}
+  std::size_t pixel_count() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
   float* at(int x, int y) { return pixels.data() + offset(x, y); }
   const float* at(int x, int y) const { return pixels.data() + offset(x, y); }
 

@@ -17,7 +17,7 @@ namespace prt::mesh {
 
 struct ReadLimits {
   std::size_t max_file_bytes = kMaxInputBytes;
-  std::size_t max_image_pixels = image::kMaxPixels;
+  std::size_t max_image_pixels = image::kMaxPixels;  ///< of all textures together
 };
 
 /// One primitive for each material used (.obj), or one.

@@ -55,6 +55,12 @@ class LibraryReader {
     }
   }
 
+  std::size_t pixels_left() const {
+    std::size_t left = limits_.max_image_pixels;
+    for (const image::Image& image : scene_.images) left -= image.pixel_count();
+    return left;
+  }
+
   void read_texture(std::string_view name) {
     if (name.starts_with('-')) {  // options before the name; a name after them has no spaces
       const std::size_t space = name.find_last_of(" \t");
@@ -64,7 +70,7 @@ class LibraryReader {
     const auto [known, added] = images_.try_emplace(file.string(), -1);
     if (added) {
       try {
-        image::Image image = image::read_image(file, limits_.max_image_pixels);
+        image::Image image = image::read_image(file, pixels_left());
         known->second = static_cast<int>(scene_.images.size());
         scene_.images.push_back(std::move(image));
       } catch (const Error& error) {

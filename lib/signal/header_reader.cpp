@@ -141,8 +141,8 @@ void HeaderReader::check_window(const TransferSignal& signal) const {
   const Imath::Box2i& window = header_.dataWindow();
   const auto width = std::int64_t{window.max.x} - window.min.x + 1;
   const auto height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || width > kMaxWidth) {
-    reject("data window", fmt::format("{} pixels wide", width), fmt::format("1 to {}", kMaxWidth));
+  if (width < 1 || width > static_cast<std::int64_t>(kFileWidth)) {
+    reject("data window", fmt::format("{} pixels wide", width), fmt::format("1 to {}", kFileWidth));
   }
   const std::size_t lines = line_count(signal.blocks, static_cast<std::size_t>(width));
   if (height < 1 || static_cast<std::size_t>(height) != lines) {
@@ -160,7 +160,12 @@ void HeaderReader::check_size(const TransferSignal& signal, std::size_t file_byt
                                            .found = fmt::format("{} bytes", value_bytes),
                                            .expected = fmt::format("at most {}", max_bytes)});
   }
-  const std::size_t least = value_bytes / largest_expansion(header_.compression());
+  // Every line is stored whole, with the padding behind its block.
+  const Imath::Box2i& window = header_.dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  const std::size_t pixel_bytes =
+      checked_multiply(line_count(signal.blocks, width), checked_multiply(width, row_bytes));
+  const std::size_t least = pixel_bytes / largest_expansion(header_.compression());
   if (file_bytes < least) {
     throw_bad_input("truncated file", {.file = file_,
                                        .found = fmt::format("{} bytes", file_bytes),

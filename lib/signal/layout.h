@@ -15,11 +15,11 @@ namespace prt::signal {
 
 constexpr int kFormatVersion = 1;
 
-/// Pixels in a scanline of the files that we write; a reader takes any width.
+/// Pixels in a scanline of the files that we write (fewer when no block has as many vertices), and
+/// the most that is read: it bounds the memory that a strip takes.
 constexpr std::size_t kFileWidth = 256;
 
 /// What a file may not exceed.
-constexpr int kMaxWidth = 65536;
 constexpr int kMaxBandCount = 31;
 constexpr int kMaxRowCount = 961;
 constexpr int kMaxDimension = 8192;

@@ -36,6 +36,26 @@ TEST_F(GltfImport, LeavesAGoodFileAlone) {
   EXPECT_EQ(result.document.glb_bytes(), before.glb_bytes());
 }
 
+TEST_F(GltfImport, RefusesTransformsThatBakingWouldRefuse) {
+  const auto error_with = [&](const char* key, const ordered_json& value) -> std::string {
+    ordered_json json = samples::triangle_json();
+    json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+    json["nodes"][0][key] = value;
+    try {
+      import(json);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+      return error.what();
+    }
+    return "no error";
+  };
+  for (const ordered_json& scale : {ordered_json{0, 0, 0}, ordered_json{1, 0, 1}}) {
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "flattens the mesh", error_with("scale", scale));
+  }
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "out of the range of floats",
+                      error_with("matrix", {3e38, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3e38, 0, 0, 1}));
+}
+
 TEST_F(GltfImport, GivesEachNodeAMeshOfItsOwn) {
   ordered_json json = samples::triangle_json();
   json["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 5}}});

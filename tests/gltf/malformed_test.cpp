@@ -111,6 +111,23 @@ TEST(GltfRead, RejectsImageViewThatDoesNotExistOrRunsPastItsBuffer) {
   EXPECT_ERROR(json, "bufferView 2: runs past the end of its buffer");
 }
 
+TEST(GltfRead, ImagesShareALimitOfPixelsAndAreDecodedOnce) {
+  mesh::Scene scene = samples::scene();  // a texture of 2 x 2 pixels
+  scene.images.push_back(scene.images[0]);
+  scene.materials[1].base_color_image = 1;
+  auto bytes = Document::from_scene(scene).glb_bytes();
+  const auto load = [&](std::size_t max_pixels) {
+    return Document::parse(bytes, "a.glb", {.max_image_pixels = max_pixels}).scene().images.size();
+  };
+  EXPECT_EQ(load(8), 2u);
+  EXPECT_ERROR([&] { load(7); }, "found 2 x 2 pixels, expected 1 to 3 pixels");
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t first = text.find("\"bufferView\"", text.find("\"images\""));
+  const std::size_t second = text.find("\"bufferView\"", first + 1);
+  std::copy_n(&bytes[first], std::strlen("\"bufferView\":12"), &bytes[second]);
+  EXPECT_EQ(load(4), 1u);
+}
+
 TEST(GltfRead, RejectsUnalignedAccessor) {
   ordered_json json = with("/accessors/0/byteOffset", 2);
   json["accessors"][0]["count"] = 2;
@@ -202,6 +219,52 @@ TEST(GltfRead, RejectsTooDeepNodes) {
   EXPECT_ERROR(json, "nested too deeply");
 }
 
+TEST(GltfRead, RejectsMorePrimitivesThanTheLimitHoweverTheyAreShared) {
+  ordered_json json = samples::triangle_json();
+  ordered_json& primitives = json["meshes"][0]["primitives"];
+  const ordered_json primitive = primitives[0], node = json["nodes"][0];
+  for (int i = 1; i < 300; ++i) {
+    primitives.push_back(primitive);
+    json["nodes"].push_back(node);
+  }
+  EXPECT_ERROR(json, "too many primitives: found 90000, expected at most 65536");
+}
+
+TEST(GltfRead, RejectsMeshesThatAreLargerWhenEveryNodeHasItsOwn) {
+  ordered_json json = samples::triangle_json();
+  json["meshes"][0]["extras"] = std::string(100000, 'x');
+  const ordered_json node = json["nodes"][0];
+  for (int i = 1; i < 1000; ++i) json["nodes"].push_back(node);
+  EXPECT_ERROR(json, "meshes used too often");
+}
+
+TEST(GltfRead, RejectsNodesThatTheSceneShowsTwice) {
+  EXPECT_ERROR(with("/scenes/0/nodes", {0, 0}), "a node that the scene shows twice");
+}
+
+TEST(GltfRead, RejectsPrimitivesWithoutPositions) {
+  EXPECT_ERROR(with("/meshes/0/primitives/0/attributes", ordered_json::object()), "no positions");
+}
+
+TEST(GltfRead, RejectsObjectsOfTooManyKeys) {
+  ordered_json json = samples::triangle_json();
+  ordered_json extras = ordered_json::object();
+  for (int i = 0; i < 4096; ++i) extras[std::to_string(i)] = i;
+  json["extras"] = extras;
+  EXPECT_ERROR(json, "not of unit length");  // the sample's only fault
+  json["extras"]["one more"] = 0;
+  EXPECT_ERROR(json, "too many keys");
+}
+
+TEST(GltfRead, RejectsTooManyZerosInAll) {
+  ordered_json json = samples::triangle_json();
+  const ordered_json zeros{{"componentType", 5126}, {"count", 1 << 21}, {"type", "MAT4"}};
+  json["accessors"].push_back(zeros);
+  EXPECT_ERROR(json, "not of unit length");
+  json["accessors"].push_back(zeros);
+  EXPECT_ERROR(json, "too many elements without data");
+}
+
 TEST(GltfRead, RejectsUrisThatLeaveTheFolder) {
   for (const char* uri : {"../secret.bin", "a/../../secret.bin", "/etc/passwd", "%2e%2e/secret.bin",
                           "%2E%2E%2Fsecret.bin", "..\\secret.bin", "file:///etc/passwd",
@@ -210,6 +273,23 @@ TEST(GltfRead, RejectsUrisThatLeaveTheFolder) {
         << uri;
   }
   EXPECT_ERROR(with("/images", {{{"uri", "../a.png"}}}), "a relative path inside");
+}
+
+TEST(GltfRead, RejectsLinksThatLeaveTheFolder) {
+  const samples::TemporaryFolder inside, outside;
+  outside.write("secret.bin", std::string(42, 'x'));
+  inside.write("near.bin", std::string(42, 'x'));
+  std::filesystem::create_symlink(outside / "secret.bin", inside / "far.bin");
+  std::filesystem::create_directory_symlink(outside / ".", inside / "folder");
+  std::filesystem::create_symlink("near.bin", inside / "alias.bin");
+  const auto error_with = [&](const char* uri) {
+    const std::string text = with("/buffers/0/uri", uri).dump();
+    return error_of([&] { Document::parse(bytes_of(text), inside / "a.gltf"); });
+  };
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "link out of the folder", error_with("far.bin"));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "link out of the folder",
+                      error_with("folder/secret.bin"));
+  EXPECT_EQ(error_with("alias.bin"), "no error");
 }
 
 TEST(GltfRead, RejectsBadDataUris) {

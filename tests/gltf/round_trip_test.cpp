@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "core/file.h"
 #include "gltf/document.h"
 #include "gltf/import.h"
@@ -106,6 +107,35 @@ TEST(GltfRoundTrip, MeansAloneAreATransferToo) {
   EXPECT_EQ(after->encoding.component_count, 0);
   EXPECT_TRUE(after->encoding.bases.empty());
   EXPECT_TRUE(after->encoding.weights.empty());
+}
+
+TEST(GltfRoundTrip, WritesNoTransferThatItWouldNotRead) {
+  const auto error_of = [](const PrecomputedTransfer& transfer) -> std::string {
+    Document document = Document::from_scene(samples::scene());
+    try {
+      document.set_precomputed_transfer(transfer);
+      document.precomputed_transfer();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::failed);
+      EXPECT_FALSE(document.precomputed_transfer());
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(error_of(samples::transfer(6, 3, 256)), "no error");
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "number of components",
+                      error_of(samples::transfer(6, 3, 257)));
+  const auto error_with = [&](int PrecomputedTransfer::*field, int value) {
+    PrecomputedTransfer transfer = samples::transfer(6);
+    transfer.*field = value;
+    return error_of(transfer);
+  };
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "number of bands",
+                      error_with(&PrecomputedTransfer::band_count, 17));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "number of rows",
+                      error_with(&PrecomputedTransfer::row_count, 257));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "number of channels",
+                      error_with(&PrecomputedTransfer::channel_count, 2));
 }
 
 TEST(GltfRoundTrip, BakingAgainDoesNotMakeTheFileGrow) {

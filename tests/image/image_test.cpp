@@ -205,6 +205,27 @@ TEST_F(ImageFile, RejectsHugeHeaderClaims) {
   expect_bad_input([&] { read_image(folder_ / "a.exr"); });
 }
 
+TEST_F(ImageFile, RejectsMorePixelsThanTheFileCanHoldBeforeTakingMemory) {
+  // 16000 x 16000 pixels are within the limit.
+  const std::string png =
+      std::string("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\x3e\x80\0\0\x3e\x80\x08\x02\0\0\0", 29) +
+      "\xce\x1c\x48\x89" + std::string("\0\0\0\x08IDAT", 8) + std::string(12, '\0') +
+      std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+  write_bytes(folder_ / "a.png", png);
+  write_bytes(folder_ / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16000 +X 16000\n");
+  for (const char* name : {"a.png", "a.hdr"}) {
+    const std::string message = expect_bad_input([&] { read_image(folder_ / name); });
+    EXPECT_NE(message.find("bytes for 16000 x 16000 pixels"), std::string::npos) << message;
+  }
+}
+
+TEST_F(ImageFile, ReadsWhatCompressesWell) {
+  for (const char* name : {"a.png", "a.exr"}) {
+    write_image(folder_ / name, Image(2048, 2048, 3));
+    EXPECT_EQ(read_image(folder_ / name).width, 2048);
+  }
+}
+
 TEST_F(ImageFile, PixelLimitIsInclusive) {
   write_image(folder_ / "a.png", random_image(8, 8, 3, 1));
   EXPECT_NO_THROW(read_image(folder_ / "a.png", 64));

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "image/image.h"
 #include "mesh/mesh_file.h"
 #include "mesh/prepare.h"
 
@@ -74,6 +75,36 @@ TEST(ObjRead, RejectsMaterialsOutsideTheFolder) {
   for (const char* name : {"../a.mtl", "/etc/passwd", "http://a/b.mtl", "C:\\a.mtl", "..\\a.mtl"}) {
     EXPECT_HAS(obj_error(std::string("mtllib ") + name + "\n"), "inside the file's own folder");
   }
+}
+
+TEST(ObjRead, TexturesShareALimitOfPixels) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "prtkit_mesh_textures";
+  std::filesystem::create_directories(folder);
+  image::write_image(folder / "a.png", image::Image(8, 8, 3));
+  image::write_image(folder / "b.png", image::Image(8, 8, 3));
+  std::ofstream(folder / "a.mtl") << "newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n"
+                                     "newmtl c\nmap_Kd a.png\n";
+  const std::string text = "mtllib a.mtl\n" + kVertices + "f 1 2 3\n";
+  const auto image_count = [&](std::size_t max_pixels) {
+    return read_obj(text, folder / "a.obj", {.max_image_pixels = max_pixels}).images.size();
+  };
+  EXPECT_EQ(image_count(128), 2u);  // and the one used twice is there once
+  EXPECT_EQ(image_count(127), 1u);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(ObjRead, RejectsLinksToMaterialsOutsideTheFolder) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "prtkit_mesh_links";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "inside");
+  std::ofstream(folder / "secret.mtl") << "newmtl a\nKd 1 0 0\n";
+  std::filesystem::create_symlink(folder / "secret.mtl", folder / "inside" / "far.mtl");
+  const std::string text = "mtllib far.mtl\n" + kVertices + "f 1 2 3\n";
+  EXPECT_HAS(error_of([&] { read_obj(text, folder / "inside" / "a.obj", {}); }),
+             "link out of the folder");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(ObjRead, VertexThatIsNotFiniteIsDroppedAndCounted) {

@@ -201,6 +201,22 @@ TEST_F(TransferFile, RefusesHeadersThatClaimMoreThanTheFileHolds) {
   patch("dataWindow\0box2i\0"s, 4 + 12);  // the last scanline
 }
 
+TEST_F(TransferFile, RefusesWindowsWiderThanTheStoredLines) {
+  write_transfer(path(), make_signal(2, 1, 1, {100}));
+  const std::string whole = read_text_file(path());
+  const auto error_at_width = [&](std::int32_t width) {
+    using namespace std::string_literals;
+    const std::string attribute = "dataWindow\0box2i\0"s;
+    const std::int32_t last = width - 1;
+    std::string bytes = whole;
+    std::memcpy(&bytes[bytes.find(attribute) + attribute.size() + 4 + 8], &last, sizeof(last));
+    std::ofstream(path("wide.exr"), std::ios::binary) << bytes;
+    return reading_error(path("wide.exr"));
+  };
+  expect_contains(error_at_width(256), "truncated file");  // 256 × 4 floats are not there
+  expect_contains(error_at_width(65536), "65536 pixels wide");
+}
+
 TEST_F(TransferFile, LeavesNothingWhenWritingFails) {
   const TransferSignal signal = make_signal(2, 1, 1, {600});
   EXPECT_THROW(write_transfer(folder_ / "no" / "such" / "folder.exr", signal), Error);
