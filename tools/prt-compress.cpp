@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "cli/paths.h"
 #include "cli/tool.h"
-#include "core/atomic_file.h"
 #include "core/log.h"
 #include "cpca/encoder.h"
 #include "cpca/figures.h"
@@ -103,7 +103,8 @@ void compress(Arguments arguments, const cli::CommonOptions& common, Report& rep
   options.seed = common.seed;
   if (arguments.method == "vq") options.component_count = 0;
   if (arguments.method == "pca") options.cluster_count = 1;
-  check_output(arguments.output, common.no_clobber);
+  cli::check_paths({arguments.model, arguments.transfer},
+                   {{arguments.output, {".glb"}, arguments.model}}, common);
   Input input = load(arguments, report);
   const signal::TransferSignal& signal = input.signal;
   cpca::Encoded encoded = cpca::encode_static(signal.values, signal.dimension(), options);

@@ -1,6 +1,6 @@
 // Reads a model, checks and repairs it, writes .glb: docs/tools/prt-import.md.
+#include "cli/paths.h"
 #include "cli/tool.h"
-#include "core/atomic_file.h"
 #include "core/log.h"
 #include "gltf/import.h"
 
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
   return tool.run(argc, argv, [&](prt::Report& report) {
     options.up = up == "z" ? prt::mesh::UpAxis::z : prt::mesh::UpAxis::y;
     if (!base_color.empty()) options.base_color = {base_color[0], base_color[1], base_color[2]};
-    prt::check_output(output, tool.common().no_clobber);
+    prt::cli::check_paths({input}, {{output, {".glb"}, input}}, tool.common());
     std::optional<prt::gltf::ImportResult> result;
     {
       const prt::StageTimer timer(report, "import");

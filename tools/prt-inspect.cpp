@@ -1,6 +1,7 @@
 // prt-inspect: what is in a file of prtkit's, is it valid, where is the error.
 #include <fmt/format.h>
 
+#include "cli/paths.h"
 #include "cli/tool.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -55,6 +56,17 @@ void check_usage(const Options& options) {
   }
 }
 
+void check_files(const Options& options, const cli::CommonOptions& common) {
+  std::vector<fs::path> inputs{options.file, options.transfer, options.mask, options.noise};
+  inputs.insert(inputs.end(), options.compare.begin(), options.compare.end());
+  std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
+  if (!options.plots.empty()) {
+    outputs.push_back({options.plots / "error-histogram.png", {".png"}, {}});
+    outputs.push_back({options.plots / "error-histogram.csv", {".csv"}, {}});
+  }
+  cli::check_paths(inputs, outputs, common);
+}
+
 void write_plots(const Options& options, const std::vector<double>& errors, bool no_clobber,
                  Report& report) {
   const inspect::Histogram histogram = inspect::make_histogram(errors);
@@ -71,7 +83,6 @@ void write_plots(const Options& options, const std::vector<double>& errors, bool
 }
 
 bool inspect_one(const Options& options, bool no_clobber, Report& report, inspect::Json& json) {
-  if (!options.plots.empty()) check_output(options.plots / "error-histogram.png", no_clobber);
   {
     const StageTimer timer(report, "inspect");
     report.add_input(options.file);
@@ -118,6 +129,7 @@ int main(int argc, char** argv) {
   add_options(tool.app(), options);
   return tool.run(argc, argv, [&](Report& report) {
     check_usage(options);
+    check_files(options, tool.common());
     const bool no_clobber = tool.common().no_clobber;
     inspect::Json json = inspect::Json::object();
     bool valid = true;

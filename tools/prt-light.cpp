@@ -2,9 +2,10 @@
 // docs/tools/prt-light.md.
 #include <map>
 #include <optional>
+#include <span>
 
+#include "cli/paths.h"
 #include "cli/tool.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "image/environment.h"
 #include "sh/analytic_light.h"
@@ -46,19 +47,23 @@ sh::Light map_light(const Options& options, Report& report) {
   return light;
 }
 
-void run(const Options& options, bool no_clobber, Report& report) {
+void run(const Options& options, const cli::CommonOptions& common, Report& report) {
   sh::Light light(options.band_count);
   for (const auto& [kind, numbers] : options.analytic) {
-    if (!numbers.empty()) light = sum(light, analytic_light(kind, options.band_count, numbers));
+    const auto count = static_cast<std::size_t>(number_count(kind));
+    for (std::size_t first = 0; first < numbers.size(); first += count) {
+      const auto one = std::span(numbers).subspan(first, count);
+      light = sum(light, analytic_light(kind, options.band_count, one));
+    }
   }
   if (light.source.empty() && options.input.empty()) {
     throw Error(ErrorKind::usage, "no light",
                 {.advice = "Give a map, --constant, --disk or --directional; see --help."});
   }
-  check_output(options.output, no_clobber);
+  cli::check_paths({options.input}, {{options.output, {".json"}, {}}}, common);
   if (!options.input.empty()) light = sum(map_light(options, report), light);
   light = edited(light, options.edit);
-  sh::write_light(options.output, light, no_clobber);
+  sh::write_light(options.output, light, common.no_clobber);
   const sh::LightStatistics statistics = sh::statistics_of(light);
   report.json()["band_count"] = light.band_count;
   report.json()["energy"] = statistics.energy;
@@ -80,6 +85,7 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option(name, options.analytic[kind], help)
         ->expected(number_count(kind))
         ->delimiter(',')
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name(shape)
         ->default_str("")
         ->group("Lights");
@@ -119,6 +125,6 @@ int main(int argc, char** argv) {
   return tool.run(argc, argv, [&](Report& report) {
     options.edit.rotation = Vec3(options.rotation[0], options.rotation[1], options.rotation[2]);
     options.edit.window = sh::window_from_name(options.window);
-    run(options, tool.common().no_clobber, report);
+    run(options, tool.common(), report);
   });
 }

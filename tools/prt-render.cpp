@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "cli/paths.h"
 #include "cli/tool.h"
 #include "runtime/reference/reference_job.h"
 #include "runtime/render_job.h"
@@ -27,7 +28,11 @@ const std::map<std::string, Background> kBackgrounds = {{"environment", Backgrou
 template <class Vector>
 void add_vector(CLI::App& app, const char* name, Vector& value, const std::string& description) {
   app.add_option_function<std::vector<float>>(
-         name, [&value](const std::vector<float>& v) { value = prt::Vec3(v[0], v[1], v[2]); },
+         name,
+         [&value, name](const std::vector<float>& v) {
+           if (v.size() != 3) throw CLI::ValidationError(name, "expected X,Y,Z");
+           value = prt::Vec3(v[0], v[1], v[2]);
+         },
          description)
       ->delimiter(',')
       ->expected(3)
@@ -118,6 +123,9 @@ int main(int argc, char** argv) {
   add_render_options(tool.app(), options);
   add_reference_options(tool.app(), reference_options, reference);
   return tool.run(argc, argv, [&](prt::Report& report) {
+    const PictureOptions& picture = options.picture;
+    prt::cli::check_paths({picture.model, picture.light, options.transfer},
+                          {{picture.output, {".png", ".exr"}, {}}}, tool.common());
     options.picture.no_clobber = tool.common().no_clobber;
     options.debug = tool.common().verbose;
     if (!reference) return prt::runtime::render(options, report);

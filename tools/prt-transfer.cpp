@@ -2,8 +2,8 @@
 
 #include <map>
 
+#include "cli/paths.h"
 #include "cli/tool.h"
-#include "core/atomic_file.h"
 #include "core/log.h"
 #include "gltf/document.h"
 #include "signal/transfer_signal.h"
@@ -77,7 +77,7 @@ mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
 }
 
 void bake(const Options& options, const cli::CommonOptions& common, Report& report) {
-  check_output(options.output, common.no_clobber);
+  cli::check_paths({options.input}, {{options.output, {".exr"}, {}}}, common);
   const mesh::Scene scene = load_scene(options.input, report);
   transfer::DiffuseOptions diffuse = options.diffuse;
   diffuse.shadowed = !options.unshadowed;

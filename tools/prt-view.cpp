@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 
+#include "cli/paths.h"
 #include "cli/tool.h"
 #include "runtime/viewer.h"
 
@@ -50,6 +51,8 @@ int main(int argc, char** argv) {
   ViewerOptions options;
   add_options(tool.app(), options);
   return tool.run(argc, argv, [&](prt::Report& report) {
+    prt::cli::check_paths({options.model, options.transfer, options.light},
+                          {{options.screenshot, {".png"}, {}}}, tool.common());
     options.no_clobber = tool.common().no_clobber;
     options.debug = tool.common().verbose;
     prt::runtime::Viewer viewer(options);

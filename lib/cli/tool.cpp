@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <iostream>
 #include <new>
 
+#include "core/atomic_file.h"
 #include "core/cpu.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -24,6 +26,14 @@ void apply(const CommonOptions& options) {
   log::set_level(options.quiet     ? log::Level::error
                  : options.verbose ? log::Level::debug
                                    : log::Level::info);
+}
+
+/// Results that do not arrive (a full disk, a closed pipe) are a failure.
+void flush_results() {
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw_failed("writing to the standard output failed");
+  }
 }
 
 }  // namespace
@@ -59,19 +69,43 @@ void Tool::record_options(Report& report) const {
   }
 }
 
+void Tool::check_values() const {
+  for (const CLI::Option* option : app_.get_options()) {
+    const CLI::results_t& values = option->results();
+    const auto count = static_cast<std::size_t>(option->get_items_expected_min());
+    if (count > 1 && values.size() % count != 0) {
+      throw Error(ErrorKind::usage, option->get_name() + ": wrong count",
+                  {.found = fmt::format("{}", fmt::join(values, ",")),
+                   .expected = fmt::format("{} values", count)});
+    }
+    if (!option->get_type_name().starts_with("UINT")) continue;
+    for (const std::string& value : values) {  // CLI11 2.1 takes -1 for the largest number
+      if (value.starts_with('-')) {
+        throw Error(ErrorKind::usage, option->get_name() + ": negative", {.found = value});
+      }
+    }
+  }
+}
+
+int Tool::execute(const std::function<void(Report&)>& work) {
+  check_values();
+  apply(common_);
+  if (!common_.report.empty()) check_output(common_.report, common_.no_clobber);
+  Report report(name_);
+  record_options(report);
+  work(report);
+  flush_results();
+  if (!common_.report.empty()) report.write(common_.report, common_.no_clobber);
+  return 0;
+}
+
 int Tool::run(int argc, char** argv, const std::function<void(Report&)>& work) {
   try {
     app_.parse(argc, argv);
+    return execute(work);
   } catch (const CLI::ParseError& error) {
-    return app_.exit(error) == 0 ? 0 : kWrongUsage;
-  }
-  try {
-    apply(common_);
-    Report report(name_);
-    record_options(report);
-    work(report);
-    if (!common_.report.empty()) report.write(common_.report, common_.no_clobber);
-    return 0;
+    const bool asked = app_.exit(error) == 0;  // --help, --version
+    return !asked ? kWrongUsage : std::cout.flush() ? 0 : kFailed;
   } catch (const Error& error) {
     fmt::print(stderr, "{}: {}\n", name_, error.what());
     return error.exit_status();

@@ -37,6 +37,8 @@ class Tool {
   int run(int argc, char** argv, const std::function<void(Report&)>& work);
 
  private:
+  void check_values() const;
+  int execute(const std::function<void(Report&)>& work);
   void record_options(Report& report) const;
 
   std::string name_;

@@ -29,6 +29,32 @@ struct Slot {
 };
 std::array<Slot, kSlotCount> slots;
 
+constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
+
+/// Files that exist but have no slot yet.
+std::atomic<int> unregistered{0};
+
+/// While it lives this thread takes no signal, and the handler on another one waits.
+class RegistrationGuard {
+ public:
+  RegistrationGuard() {
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    for (const int signal : kSignals) sigaddset(&blocked, signal);
+    pthread_sigmask(SIG_BLOCK, &blocked, &earlier_);
+    ++unregistered;
+  }
+  ~RegistrationGuard() {
+    --unregistered;
+    pthread_sigmask(SIG_SETMASK, &earlier_, nullptr);
+  }
+  RegistrationGuard(const RegistrationGuard&) = delete;
+  RegistrationGuard& operator=(const RegistrationGuard&) = delete;
+
+ private:
+  sigset_t earlier_{};
+};
+
 void remove_all() {
   for (Slot& slot : slots) {
     if (slot.ready.load()) unlink(slot.path.data());
@@ -36,6 +62,8 @@ void remove_all() {
 }
 
 void on_signal(int signal) {
+  while (unregistered.load() > 0) {
+  }
   remove_all();
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -45,11 +73,10 @@ void install_handlers() {
   static std::once_flag once;
   std::call_once(once, [] {
     std::atexit(remove_all);
-    for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a size limit then shows as EFBIG from write, with our message
+    for (const int signal : kSignals) {
       struct sigaction current {};
-      if (signal == SIGXFSZ) {  // a size limit then shows as EFBIG from write, with our message
-        std::signal(signal, SIG_IGN);
-      } else if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_DFL) {
+      if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_DFL) {
         struct sigaction action {};
         action.sa_handler = on_signal;
         sigaction(signal, &action, nullptr);
@@ -77,6 +104,12 @@ void release_slot(int slot) {
   slots[static_cast<std::size_t>(slot)].used = false;
 }
 
+/// What a link names; other paths as they are.
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  std::error_code code;
+  return std::filesystem::is_symlink(path, code) ? std::filesystem::canonical(path, code) : path;
+}
+
 [[noreturn]] void throw_system(const std::string& what, const std::filesystem::path& path) {
   throw_failed(what + ": " + std::strerror(errno), {.file = path.string()});
 }
@@ -86,10 +119,12 @@ void release_slot(int slot) {
 AtomicFile::AtomicFile(std::filesystem::path path, bool no_clobber)
     : path_(std::move(path)), no_clobber_(no_clobber) {
   check_output(path_, no_clobber_);
+  path_ = resolved(path_);
   install_handlers();
   const std::string extension = path_.extension().string();
   std::string pattern = (path_.parent_path() / ("." + path_.stem().string() + ".XXXXXX")).string();
   pattern += extension;
+  const RegistrationGuard guard;
   descriptor_ = mkostemps(pattern.data(), static_cast<int>(extension.size()), O_CLOEXEC);
   if (descriptor_ < 0) throw_system("cannot create the output", path_);
   temporary_ = pattern;
@@ -138,11 +173,18 @@ void check_output(const std::filesystem::path& path, bool no_clobber) {
   if (no_clobber && lstat(path.c_str(), &status) == 0) {
     throw_failed("exists, and --no-clobber is set", {.file = path.string()});
   }
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (lstat(path.c_str(), &status) == 0 &&
+      (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode))) {
+    throw_failed("exists and is not a regular file",
+                 {.file = path.string(), .advice = "Give another name."});
+  }
+  const std::filesystem::path target = resolved(path);
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
   if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) {
     throw_failed("output folder does not exist",
                  {.file = path.string(), .advice = "Create " + folder.string() + " first."});
   }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw_system("cannot write in the folder", path);
 }
 
 }  // namespace prt

@@ -1,6 +1,7 @@
 // Output that is either complete or absent: written to a temporary file in the same folder, synced,
-// renamed. An exception, an exit, SIGINT, SIGTERM or SIGHUP leaves no temporary file behind and an
-// earlier output untouched.
+// renamed. An exception, an exit, SIGINT, SIGTERM, SIGHUP, SIGQUIT or SIGPIPE leaves no temporary
+// file behind and an earlier output untouched. A link to a regular file stays: what it names is
+// replaced.
 #pragma once
 
 #include <cstddef>
@@ -37,8 +38,9 @@ class AtomicFile {
   bool no_clobber_;
 };
 
-/// Throws Error (failed) when `path` cannot become an output: its folder is missing, or it exists
-/// and no_clobber is set. Tools ask before the work, not after.
+/// Throws Error (failed) when `path` cannot become an output: its folder is missing or not
+/// writable, or it exists and no_clobber is set or it is not a regular file (a folder, a device, a
+/// pipe, a link to one of these or to nothing). Tools ask before the work, not after.
 void check_output(const std::filesystem::path& path, bool no_clobber);
 
 }  // namespace prt

@@ -12,12 +12,7 @@ namespace {
 
 template <class Container>
 Container read_whole(const std::filesystem::path& path, std::size_t limit) {
-  std::error_code code;
-  const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) throw_bad_input("no such file", {.file = path.string()});
-  if (!std::filesystem::is_regular_file(status)) {
-    throw_bad_input("not a regular file", {.file = path.string()});
-  }
+  check_input(path);
   const std::uintmax_t size = std::filesystem::file_size(path);
   if (size > limit) {
     throw_bad_input("file too large", {.file = path.string(),
@@ -35,6 +30,15 @@ Container read_whole(const std::filesystem::path& path, std::size_t limit) {
 }
 
 }  // namespace
+
+void check_input(const std::filesystem::path& path) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) throw_bad_input("no such file", {.file = path.string()});
+  if (!std::filesystem::is_regular_file(status)) {
+    throw_bad_input("not a regular file", {.file = path.string()});
+  }
+}
 
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t limit) {
   return read_whole<std::vector<std::byte>>(path, limit);

@@ -11,6 +11,9 @@ namespace prt {
 /// Default of the --max-input-bytes options.
 constexpr std::size_t kMaxInputBytes = std::size_t{8} << 30;
 
+/// Throws Error (bad_input) when `path` is missing or not a regular file.
+void check_input(const std::filesystem::path& path);
+
 /// Bytes of a regular file. Throws Error (bad_input) when it is missing, a folder, or larger than
 /// `limit` bytes.
 std::vector<std::byte> read_file(const std::filesystem::path& path,

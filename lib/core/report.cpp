@@ -4,6 +4,7 @@
 
 #include "core/atomic_file.h"
 #include "core/cpu.h"
+#include "core/file.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 
@@ -28,7 +29,11 @@ Report::Report(std::string tool) : start_(std::chrono::steady_clock::now()) {
   json_["stages"] = nlohmann::ordered_json::array();
 }
 
-void Report::add_input(const std::filesystem::path& path) { add_file(json_["inputs"], path); }
+void Report::add_input(const std::filesystem::path& path) {
+  check_input(path);
+  add_file(json_["inputs"], path);
+}
+
 void Report::add_output(const std::filesystem::path& path) { add_file(json_["outputs"], path); }
 
 void Report::add_stage(const std::string& name, double seconds) {

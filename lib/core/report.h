@@ -17,7 +17,8 @@ class Report {
   /// The object itself, for figures of the tool's own.
   nlohmann::ordered_json& json() { return json_; }
 
-  /// Adds path, bytes and content hash under "inputs" or "outputs".
+  /// Adds path, bytes and content hash under "inputs" or "outputs". An input that is missing or not
+  /// a regular file is an Error (bad_input).
   void add_input(const std::filesystem::path& path);
   void add_output(const std::filesystem::path& path);
 
