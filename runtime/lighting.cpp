@@ -51,8 +51,10 @@ Lighting lighting_from(sh::Light light) {
   return {std::move(light), std::move(environment), false};
 }
 
+bool is_light_file(const std::filesystem::path& path) { return path.extension() == ".json"; }
+
 Lighting load_lighting(const std::filesystem::path& path, int band_count) {
-  if (path.extension() == ".json") return lighting_from(sh::read_light(path));
+  if (is_light_file(path)) return lighting_from(sh::read_light(path));
   image::Image map = image::read_environment(path);
   sh::Light light = sh::project_environment(band_count, map.width, map.height, map.pixels.data());
   return {std::move(light), std::move(map), true};

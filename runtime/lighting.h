@@ -16,6 +16,9 @@ struct Lighting {
   bool is_full_map = false;  ///< `environment` is the file's map, not the band-limited light's
 };
 
+/// Whether a path names a light file rather than an environment map.
+bool is_light_file(const std::filesystem::path& path);
+
 /// A light file (.json), shown behind the model as band limited as it lights; or an environment map
 /// (any other file), shown in full and projected to `band_count` bands. Throws Error (bad_input).
 Lighting load_lighting(const std::filesystem::path& path, int band_count);

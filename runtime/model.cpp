@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "gltf/document.h"
 
 namespace prt::runtime {
@@ -18,6 +19,33 @@ void check_transfer(std::size_t vertex_count, std::size_t found_vertex_count, in
   if (row_count != 1)
     throw_bad_input("only diffuse transfer can be drawn",
                     {.found = std::to_string(row_count) + " exit rows", .expected = "1"});
+}
+
+void check_belongs_to(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
+                      const std::filesystem::path& glb) {
+  const std::string hash = mesh::mesh_hash(scene);
+  if (transfer.mesh_hash == hash) return;
+  throw_bad_input("the precomputed transfer belongs to another mesh",
+                  {.file = glb.string(),
+                   .element = "meshHash",
+                   .found = transfer.mesh_hash,
+                   .expected = hash,
+                   .advice = "The geometry was changed after baking: run prt-transfer and "
+                             "prt-compress again."});
+}
+
+/// Transfer has one albedo a vertex.
+void warn_of_textures(const mesh::Scene& scene, const std::filesystem::path& glb) {
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    if (primitive.material < 0) continue;
+    const auto material = static_cast<std::size_t>(primitive.material);
+    if (scene.materials[material].base_color_image < 0) continue;
+    log::warning(
+        "{}: the base colour texture is drawn as it is at the vertices; finer detail "
+        "needs a finer mesh",
+        glb.string());
+    return;
+  }
 }
 
 }  // namespace
@@ -48,6 +76,8 @@ Model load_model(const std::filesystem::path& glb, const std::filesystem::path& 
   const gltf::Document document = gltf::Document::load(glb);
   const mesh::Scene scene = document.scene();
   std::optional<gltf::PrecomputedTransfer> compressed = document.precomputed_transfer();
+  if (compressed) check_belongs_to(*compressed, scene, glb);
+  warn_of_textures(scene, glb);
   std::optional<signal::TransferSignal> signal;
   if (!transfer.empty()) {
     signal = signal::read_transfer(transfer);

@@ -2,12 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "runtime/shading.h"
 
 namespace prt::runtime {
+
+void check_exposure(float stops) {
+  constexpr float kMost = 64.0f;
+  if (std::abs(stops) <= kMost) return;  // not so for NaN
+  throw Error(ErrorKind::usage, "the exposure is out of range",
+              {.found = std::to_string(stops), .expected = "-64 to 64 stops"});
+}
 
 image::Image developed(const image::Image& linear, const DevelopOptions& options) {
   image::Image picture(linear.width, linear.height, options.transparent ? 4 : 3);

@@ -7,6 +7,9 @@
 
 namespace prt::runtime {
 
+/// Throws Error (usage) unless it is finite and within 64 stops.
+void check_exposure(float stops);
+
 struct DevelopOptions {
   float exposure = 0.0f;     ///< stops
   bool tone_mapped = true;   ///< else colours are shown as they are, clamped

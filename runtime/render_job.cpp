@@ -1,5 +1,7 @@
 #include "runtime/render_job.h"
 
+#include <cmath>
+
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -21,9 +23,7 @@ View make_view(const RenderOptions& options, const Model& model) {
   view.camera = make_camera(options.picture, model.bounds);
   view.draw = options.draw.value_or(model.signal ? Draw::uncompressed : Draw::single);
   view.show = options.show;
-  const bool has_environment = options.show == Show::radiance && !options.picture.light.empty();
-  view.background = options.picture.background.value_or(has_environment ? Background::environment
-                                                                        : Background::color);
+  view.background = make_background(options.picture, options.show);
   view.background_color = options.picture.background_color;
   view.exposure = options.picture.exposure;
   return view;
@@ -40,18 +40,11 @@ void check_drawable(const Renderer& renderer, const View& view) {
                .advice = "Give a .glb of prt-compress, and --transfer for uncompressed transfer."});
 }
 
-/// Times that people compare: one more frame and one more change of light, everything warm.
-void measure(Renderer& renderer, const View& view, const RenderOptions& options, Report& report) {
-  const Matrix4 world_from_light = light_rotation(options.picture.light_rotation);
-  gl::finish();
-  const auto light_start = std::chrono::steady_clock::now();
-  renderer.set_light_rotation(world_from_light);
-  report.json()["light_change_seconds"] = seconds_since(light_start);
-  gl::finish();
-  const auto frame_start = std::chrono::steady_clock::now();
-  renderer.draw(view, options.picture.width, options.picture.height, options.sample_count);
-  gl::finish();
-  report.json()["frame_seconds"] = seconds_since(frame_start);
+/// Turns the light, and reports how long all that follows from it takes.
+void turn_light(Renderer& renderer, float degrees, Report& report) {
+  const auto start = std::chrono::steady_clock::now();
+  renderer.set_light_rotation(light_rotation(degrees));
+  report.json()["light_change_seconds"] = seconds_since(start);
 }
 
 }  // namespace
@@ -67,15 +60,38 @@ camera::Camera make_camera(const PictureOptions& options, const camera::Sphere& 
   return camera;
 }
 
-Lighting make_lighting(const PictureOptions& options, int band_count) {
-  if (options.band_count > 0) band_count = options.band_count;
-  if (band_count == 0) band_count = kDefaultBandCount;
-  return options.light.empty() ? lighting_from(default_light(band_count))
-                               : load_lighting(options.light, band_count);
+void check_options(const PictureOptions& options) {
+  check_exposure(options.exposure);
+  if (!std::isfinite(options.light_rotation))
+    throw Error(ErrorKind::usage, "--rotate-light is not a finite angle");
+  if (!is_finite(options.background_color))
+    throw Error(ErrorKind::usage, "--background-color is not finite");
+  if (options.band_count > 0 && is_light_file(options.light))
+    throw Error(ErrorKind::usage, "--bands has no effect on a light file, which has its own",
+                {.file = options.light.string(), .expected = "an environment map"});
+}
+
+Lighting make_lighting(const PictureOptions& options, int transfer_band_count) {
+  const int usual = transfer_band_count > 0 ? transfer_band_count : kDefaultBandCount;
+  const int band_count = options.band_count > 0 ? options.band_count : usual;
+  Lighting lighting = options.light.empty() ? lighting_from(default_light(band_count))
+                                            : load_lighting(options.light, band_count);
+  if (transfer_band_count == 0 || lighting.light.band_count <= transfer_band_count) return lighting;
+  log::warning("the light has {} bands, the transfer {}: the others are cut",
+               lighting.light.band_count, transfer_band_count);
+  lighting.light = sh::with_band_count(lighting.light, transfer_band_count);
+  if (!lighting.is_full_map) lighting = lighting_from(lighting.light);
+  return lighting;
+}
+
+Background make_background(const PictureOptions& options, Show show) {
+  const bool has_environment = show == Show::radiance && !options.light.empty();
+  return options.background.value_or(has_environment ? Background::environment : Background::color);
 }
 
 void render(const RenderOptions& options, Report& report) {
   const PictureOptions& picture = options.picture;
+  check_options(picture);
   check_output(picture.output, picture.no_clobber);
   std::optional<StageTimer> stage(std::in_place, report, "load model");
   const Model model = load_model(picture.model, options.transfer);
@@ -91,12 +107,10 @@ void render(const RenderOptions& options, Report& report) {
   renderer.set_model(model);
   check_drawable(renderer, view);
   renderer.set_lighting(lighting);
-  renderer.set_light_rotation(light_rotation(picture.light_rotation));
+  turn_light(renderer, picture.light_rotation, report);
   stage.emplace(report, "draw");
   const image::Image image =
       renderer.render(view, picture.width, picture.height, options.sample_count);
-  stage.emplace(report, "measure");
-  measure(renderer, view, options, report);
   stage.emplace(report, "write");
   write_picture(picture.output, image,
                 {.exposure = picture.exposure,

@@ -13,17 +13,17 @@ namespace prt::runtime {
 
 /// Everything that says which picture is wanted, whoever renders it.
 struct PictureOptions {
-  std::filesystem::path model, output;
-  std::filesystem::path light;  ///< .json, or an environment map; empty: default_light
-  int band_count = 0;           ///< of a projected map; 0: as many as the transfer, else 5
-  float light_rotation = 0.0f;  ///< degrees about +Y, counter-clockwise seen from above
+  std::filesystem::path model{}, output{};
+  std::filesystem::path light{};  ///< .json, or an environment map; empty: default_light
+  int band_count = 0;             ///< of a projected map; 0: as many as the transfer, else 5
+  float light_rotation = 0.0f;    ///< degrees about +Y, counter-clockwise seen from above
   int width = 1024, height = 1024;
-  std::optional<Vec3> eye, target;  ///< unset: frame the model
+  std::optional<Vec3> eye{}, target{};  ///< unset: frame the model
   Vec3 up{0.0f, 1.0f, 0.0f};
-  float vertical_fov = 40.0f;            ///< degrees
-  float exposure = 0.0f;                 ///< stops, for .png
-  std::optional<Background> background;  ///< unset: environment, or colour without --light
-                                         ///< and behind false colours
+  float vertical_fov = 40.0f;              ///< degrees
+  float exposure = 0.0f;                   ///< stops, for .png
+  std::optional<Background> background{};  ///< unset: environment, or colour without --light
+                                           ///< and behind false colours
   Vec3 background_color{0.1f, 0.1f, 0.1f};
   bool no_clobber = false;
 };
@@ -40,11 +40,20 @@ struct RenderOptions {
 /// The camera that the options ask for. Throws Error (usage).
 camera::Camera make_camera(const PictureOptions& options, const camera::Sphere& bounds);
 
-/// The options' light, as many bands as asked for or else `band_count`, not yet turned.
-Lighting make_lighting(const PictureOptions& options, int band_count);
+/// Throws Error (usage) when a number is not finite or out of range, or --bands goes with a light
+/// file, which has its own.
+void check_options(const PictureOptions& options);
 
-/// Renders without a window. Adds to the report: stages, "frame_seconds" (drawing and developing
-/// once more, everything warm), "light_change_seconds" (CPU), "opengl". Throws Error.
+/// The options' light, not yet turned. A map is projected to as many bands as asked for, else as
+/// many as the transfer has, else 5; bands that the transfer lacks are cut, so that the real-time
+/// picture and its reference show the same light. `transfer_band_count` 0: no transfer.
+Lighting make_lighting(const PictureOptions& options, int transfer_band_count);
+
+/// What is behind the model: as asked for, else the light that was given, else a colour.
+Background make_background(const PictureOptions& options, Show show);
+
+/// Renders without a window. Adds to the report: stages, "light_change_seconds" (CPU), "opengl".
+/// Throws Error.
 void render(const RenderOptions& options, Report& report);
 
 }  // namespace prt::runtime

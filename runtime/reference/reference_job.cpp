@@ -6,6 +6,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gltf/document.h"
+#include "image/environment.h"
 #include "reference/path_tracer.h"
 #include "runtime/picture.h"
 
@@ -26,10 +27,25 @@ std::unique_ptr<reference::Illumination> make_illumination(const Lighting& light
                                                               world_from_light);
 }
 
-void put_color_behind(image::Image& image, const Vec3& color) {
-  for (std::size_t i = 0; i < image.pixels.size(); i += 4)
-    for (std::size_t c = 0; c < 3; ++c)
-      image.pixels[i + c] += (1.0f - image.pixels[i + 3]) * color[static_cast<int>(c)];
+/// What composite.frag does: the environment in the direction of the pixel's centre, or a colour.
+void put_background_behind(image::Image& image, Background background,
+                           const PictureOptions& options, const camera::Camera& camera,
+                           const image::Image& environment) {
+  if (background == Background::none) return;
+  const Matrix4 light_from_world = light_rotation(options.light_rotation).transposed();
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      float* const pixel = image.at(x, y);
+      if (pixel[3] == 1.0f) continue;
+      Vec3 color = options.background_color;
+      if (background == Background::environment) {
+        const Vec3 ray = camera.ray_direction(
+            static_cast<float>(2 * x + 1) / static_cast<float>(image.width) - 1.0f,
+            1.0f - static_cast<float>(2 * y + 1) / static_cast<float>(image.height));
+        color = image::environment_radiance(environment, transform_vector(light_from_world, ray));
+      }
+      for (int c = 0; c < 3; ++c) pixel[c] += (1.0f - pixel[3]) * color[c];
+    }
 }
 
 /// Root mean square of the standard error over that of the radiance.
@@ -45,30 +61,33 @@ double relative_standard_error(const reference::Result& result) {
 
 void render_reference(const ReferenceOptions& options, Report& report) {
   const PictureOptions& picture = options.picture;
+  check_options(picture);
   check_output(picture.output, picture.no_clobber);
-  const Background background = picture.background.value_or(Background::environment);
+  const Background background = make_background(picture, Show::radiance);
   std::optional<StageTimer> stage(std::in_place, report, "load model");
-  const mesh::Scene scene = gltf::Document::load(picture.model).scene();
+  const gltf::Document document = gltf::Document::load(picture.model);
+  const mesh::Scene scene = document.scene();
+  const auto transfer = document.precomputed_transfer();
   const camera::Camera camera = make_camera(picture, camera::bounding_sphere(scene));
   stage.emplace(report, "load light");
-  const Lighting lighting = make_lighting(picture, 0);
+  const Lighting lighting = make_lighting(picture, transfer ? transfer->band_count : 0);
   const auto illumination = make_illumination(lighting, options);
   stage.emplace(report, "trace");
-  reference::Result result = reference::trace(
-      scene, camera, *illumination,
-      {.width = picture.width,
-       .height = picture.height,
-       .sample_count = options.sample_count,
-       .bounce_count = options.bounce_count,
-       .seed = options.seed,
-       .filter = options.box_filter ? reference::PixelFilter::box : reference::PixelFilter::center,
-       .background = background == Background::environment});
+  reference::Result result =
+      reference::trace(scene, camera, *illumination,
+                       {.width = picture.width,
+                        .height = picture.height,
+                        .sample_count = options.sample_count,
+                        .bounce_count = options.bounce_count,
+                        .seed = options.seed,
+                        .filter = options.box_filter ? reference::PixelFilter::box
+                                                     : reference::PixelFilter::center});
   stage.emplace(report, "write");
   report.json()["rays_cast"] = result.rays_cast;
   report.json()["rays_per_second"] = static_cast<double>(result.rays_cast) / result.trace_seconds;
   report.json()["sample_count"] = result.sample_count;
   report.json()["relative_standard_error"] = relative_standard_error(result);
-  if (background == Background::color) put_color_behind(result.radiance, picture.background_color);
+  put_background_behind(result.radiance, background, picture, camera, lighting.environment);
   write_picture(picture.output, result.radiance,
                 {.exposure = picture.exposure, .transparent = background == Background::none},
                 picture.no_clobber);
