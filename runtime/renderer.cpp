@@ -20,7 +20,25 @@ namespace {
 // Of composite.frag.
 enum Output { kLinear = 0, kSrgb = 1, kToneMapped = 2 };
 
+/// Means of blocks of `factor`² pixels, the last ones of a row or column smaller.
+image::Image reduced(const image::Image& map, int factor) {
+  image::Image small((map.width + factor - 1) / factor, (map.height + factor - 1) / factor, 3);
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      const int x_end = std::min((x + 1) * factor, map.width);
+      const int y_end = std::min((y + 1) * factor, map.height);
+      const auto count = static_cast<float>((x_end - x * factor) * (y_end - y * factor));
+      for (int j = y * factor; j < y_end; ++j)
+        for (int i = x * factor; i < x_end; ++i)
+          for (int c = 0; c < 3; ++c) small.at(x, y)[c] += map.at(i, j)[c] / count;
+    }
+  return small;
+}
+
 gl::Texture make_environment_texture(const image::Image& map) {
+  const int limit = gl::limits().max_texture_size;
+  const int factor = (std::max(map.width, map.height) + limit - 1) / limit;
+  if (factor > 1) return make_environment_texture(reduced(map, factor));
   const std::size_t texel_count = map.pixels.size() / 3;
   std::vector<float> rgba(4 * texel_count, 1.0f);
   for (std::size_t i = 0; i < texel_count; ++i) std::copy_n(&map.pixels[3 * i], 3, &rgba[4 * i]);

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "image/image.h"
+#include "runtime/picture.h"
 
 namespace prt::runtime {
 
@@ -46,6 +47,7 @@ Viewer::Viewer(const ViewerOptions& options)
       start_(Clock::now()),
       window_("prt-view", options.width, options.height, {.debug = options.debug}),
       interface_(window_.handle()) {
+  check_exposure(options_.exposure);
   if (!options_.screenshot.empty()) check_output(options_.screenshot, options_.no_clobber);
   log::debug("OpenGL {}", gl::description());
   glfwSetWindowUserPointer(window_.handle(), this);
@@ -116,14 +118,22 @@ void Viewer::load_model_file(const fs::path& path, const fs::path& transfer) {
       view_.draw = draw;
       view_.show = Show::radiance;
     }
+  if (light_band_count_ > 0 && light_band_count_ != wanted_band_count())
+    load_light_file(light_path_);
+}
+
+int Viewer::wanted_band_count() const {
+  if (options_.band_count > 0) return options_.band_count;
+  return model_band_count_ > 0 ? model_band_count_ : 5;
 }
 
 void Viewer::load_light_file(const fs::path& path) {
-  const int usual = model_band_count_ > 0 ? model_band_count_ : 5;
-  const int bands = options_.band_count > 0 ? options_.band_count : usual;
+  const int bands = wanted_band_count();
   const Lighting lighting =
       path.empty() ? lighting_from(default_light(bands)) : load_lighting(path, bands);
   renderer_.set_lighting(lighting);
+  light_path_ = path;
+  light_band_count_ = bands;
   view_.background = path.empty() ? Background::color : Background::environment;
   light_text_ = path.empty() ? lighting.light.source : path.filename().string();
 }
@@ -141,7 +151,7 @@ void Viewer::draw_frame() {
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   apply_input();
-  draw_panel();
+  if (options_.panel) draw_panel();
   ImGui::Render();
   const gl::Window::Size size = window_.framebuffer_size();
   if (size.width > 0 && size.height > 0) {  // not minimised

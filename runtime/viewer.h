@@ -25,6 +25,7 @@ struct ViewerOptions {
   Show show = Show::radiance;
   float exposure = 0.0f;       ///< stops
   float vertical_fov = 40.0f;  ///< degrees
+  bool panel = true;           ///< draw the panel
   bool no_clobber = false;
   bool debug = false;
 };
@@ -58,6 +59,7 @@ class Viewer {
  private:
   void load_model_file(const std::filesystem::path& model, const std::filesystem::path& transfer);
   void load_light_file(const std::filesystem::path& path);
+  int wanted_band_count() const;
   void apply_input();
   void draw_frame();
   void draw_panel();
@@ -78,8 +80,9 @@ class Viewer {
   View view_;
   int sample_count_ = 4;
   std::filesystem::path model_path_;
+  std::filesystem::path light_path_;  // empty: default_light
   std::string model_text_, light_text_, message_;
-  int model_band_count_ = 0;
+  int model_band_count_ = 0, light_band_count_ = 0;  // of what is loaded; 0: nothing
   Matrix4 world_from_light_;
   std::array<float, kTimingCount> frame_milliseconds_{};
   std::size_t frame_count_ = 0;

@@ -4,7 +4,8 @@
 vec3 environment_radiance(sampler2D map, vec3 direction) {
   const float kPi = 3.14159265358979;
   ivec2 size = textureSize(map, 0);
-  float u = 0.5 - atan(direction.x, direction.z) / (2.0 * kPi);
+  bool pole = direction.x == 0.0 && direction.z == 0.0;  // where atan(0, 0) is undefined
+  float u = pole ? 0.5 : 0.5 - atan(direction.x, direction.z) / (2.0 * kPi);
   float v = 0.5 - atan(direction.y, length(direction.xz)) / kPi;
   vec2 texel = vec2(u, v) * vec2(size) - 0.5;
   vec2 corner = floor(texel), f = texel - corner;

@@ -28,31 +28,45 @@ class ViewerTest : public testing::Test {
     document.save_glb(path("unbaked.glb"));
     document.set_precomputed_transfer(transfer);
     document.save_glb(path("good.glb"));
+    gltf::PrecomputedTransfer one_band = random_transfer(scene.vertex_count(), 1, 1, 2, 1);
+    one_band.mesh_hash = transfer.mesh_hash;
+    document.set_precomputed_transfer(one_band);
+    document.save_glb(path("one_band.glb"));
     std::ofstream(path("bad.glb")) << "glTF, but not really";
     std::ofstream(path("bad.json")) << "{";
     sh::write_light(path("good.json"), test_light(3));
     options_.model = path("good.glb");
     options_.screenshot = path("shot.png");
+    options_.panel = false;
     options_.width = 320;
     options_.height = 240;
   }
   ~ViewerTest() override { fs::remove_all(folder_); }
   fs::path path(const std::string& name) const { return folder_ / name; }
 
+  /// Pixels in which two windows without the panel differ: what one model or light adds to the
+  /// other.
+  std::size_t changed_pixel_count(const fs::path& a, const fs::path& b) const {
+    const image::Image first = image::read_image(a), second = image::read_image(b);
+    EXPECT_EQ(first.pixels.size(), second.pixels.size());
+    std::size_t count = 0;
+    for (int y = 0; y < first.height; ++y)
+      for (int x = 0; x < first.width; ++x)
+        count += std::abs(first.at(x, y)[0] - second.at(x, y)[0]) > 0.01f;
+    return count;
+  }
+  fs::path empty_window() {
+    ViewerOptions options = options_;
+    options.model.clear();
+    options.screenshot = path("empty.png");
+    Viewer(options).run();
+    return options.screenshot;
+  }
+
   fs::path folder_ = fs::path(testing::TempDir()) / "prtkit_viewer";
   signal::TransferSignal signal_;
   ViewerOptions options_;
 };
-
-/// Pixels whose colour varies are the model's and the panel's; a blank window has none.
-std::size_t colorful_pixel_count(const fs::path& path) {
-  const image::Image image = image::read_image(path);
-  std::size_t count = 0;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 1; x < image.width; ++x)
-      count += std::abs(image.at(x, y)[0] - image.at(x - 1, y)[0]) > 1e-3f;
-  return count;
-}
 
 TEST_F(ViewerTest, WritesAScreenshotAndEnds) {
   Viewer viewer(options_);
@@ -60,7 +74,30 @@ TEST_F(ViewerTest, WritesAScreenshotAndEnds) {
   const image::Image image = image::read_image(options_.screenshot);
   EXPECT_EQ(image.width, 320);
   EXPECT_EQ(image.height, 240);
-  EXPECT_GT(colorful_pixel_count(options_.screenshot), 2000u);
+  EXPECT_GT(changed_pixel_count(options_.screenshot, empty_window()), 10000u);
+}
+
+TEST_F(ViewerTest, PanelStandsBesideTheModel) {
+  Viewer(options_).run();
+  ViewerOptions with_panel = options_;
+  with_panel.panel = true;
+  with_panel.screenshot = path("panel.png");
+  Viewer(with_panel).run();
+  EXPECT_GT(changed_pixel_count(options_.screenshot, with_panel.screenshot), 2000u);
+}
+
+TEST_F(ViewerTest, MapIsProjectedAgainForAModelOfMoreBands) {
+  image::write_image(path("map.exr"), lighting_from(test_light(3)).environment);
+  options_.light = path("map.exr");
+  Viewer(options_).run();
+  ViewerOptions dropped = options_;
+  dropped.model = path("one_band.glb");
+  dropped.screenshot = path("dropped.png");
+  Viewer viewer(dropped);
+  viewer.open(path("good.glb"));
+  EXPECT_EQ(viewer.message(), "");
+  viewer.run();
+  EXPECT_EQ(changed_pixel_count(options_.screenshot, dropped.screenshot), 0u);
 }
 
 TEST_F(ViewerTest, BadDropsLeaveAMessageAndTheModel) {
@@ -74,7 +111,13 @@ TEST_F(ViewerTest, BadDropsLeaveAMessageAndTheModel) {
   viewer.open(path("good.glb"));
   EXPECT_EQ(viewer.message(), "");
   viewer.run();
-  EXPECT_GT(colorful_pixel_count(options_.screenshot), 2000u);
+  const fs::path after = path("after.png");
+  fs::rename(options_.screenshot, after);
+  options_.light = path("good.json");
+  Viewer(options_).run();
+  EXPECT_EQ(changed_pixel_count(options_.screenshot, after), 0u);
+  options_.light.clear();
+  EXPECT_GT(changed_pixel_count(after, empty_window()), 10000u);
 }
 
 TEST_F(ViewerTest, DroppedTransferIsCheckedAgainstTheModel) {
