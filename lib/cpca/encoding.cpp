@@ -12,6 +12,12 @@ namespace {
 constexpr std::size_t kBlock = 256;
 }
 
+int Encoding::component_count_of(int cluster) const {
+  return component_counts.empty()
+             ? component_count
+             : static_cast<int>(component_counts[static_cast<std::size_t>(cluster)]);
+}
+
 std::span<const float> Encoding::mean(int cluster) const {
   const auto n = static_cast<std::size_t>(dimension);
   return {&means[static_cast<std::size_t>(cluster) * n], n};
@@ -19,7 +25,10 @@ std::span<const float> Encoding::mean(int cluster) const {
 
 std::span<const float> Encoding::basis(int cluster, int component) const {
   const auto n = static_cast<std::size_t>(dimension);
-  return {&bases[static_cast<std::size_t>(cluster * component_count + component) * n], n};
+  const std::size_t row =
+      static_cast<std::size_t>(cluster) * static_cast<std::size_t>(component_count) +
+      static_cast<std::size_t>(component);
+  return {&bases[row * n], n};
 }
 
 void reconstruct(const Encoding& encoding, std::size_t point, std::span<float> row) {
@@ -27,7 +36,7 @@ void reconstruct(const Encoding& encoding, std::size_t point, std::span<float> r
   const auto cluster = static_cast<int>(encoding.cluster_of_point[point]);
   const std::span<const float> mean = encoding.mean(cluster);
   std::copy(mean.begin(), mean.end(), row.begin());
-  for (int i = 0; i < encoding.component_count; ++i) {
+  for (int i = 0; i < encoding.component_count_of(cluster); ++i) {
     const std::span<const float> basis = encoding.basis(cluster, i);
     const float weight =
         encoding.weights[point * static_cast<std::size_t>(encoding.component_count) +

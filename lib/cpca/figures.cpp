@@ -43,8 +43,15 @@ Figures summarize(std::span<const double> errors, std::span<const float> rows) {
 }
 
 std::size_t storage_bytes(const Encoding& encoding) {
-  const std::size_t numbers =
-      encoding.weights.size() + encoding.means.size() + encoding.bases.size();
+  std::vector<std::size_t> weight_counts(static_cast<std::size_t>(encoding.cluster_count));
+  std::size_t numbers = encoding.means.size();
+  for (int k = 0; k < encoding.cluster_count; ++k) {
+    weight_counts[static_cast<std::size_t>(k)] =
+        static_cast<std::size_t>(encoding.component_count_of(k));
+    numbers +=
+        weight_counts[static_cast<std::size_t>(k)] * static_cast<std::size_t>(encoding.dimension);
+  }
+  for (std::uint32_t cluster : encoding.cluster_of_point) numbers += weight_counts[cluster];
   const std::size_t index_bytes = encoding.cluster_count <= 65536 ? 2 : 4;
   return numbers * sizeof(float) + encoding.point_count * index_bytes;
 }

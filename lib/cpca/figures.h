@@ -21,7 +21,8 @@ struct Figures {
 Figures summarize(std::span<const double> errors, std::span<const float> rows);
 
 /// Bytes of an encoding with float32 numbers and cluster indices of 16 bits, or 32 where they need
-/// it: the storage of [Sloan03] §4.1, m_p n' + m_c (n' + 1) n numbers, and the indices.
+/// it: the storage of [Sloan03] §4.1, m_p n' + m_c (n' + 1) n numbers (fewer where clusters
+/// have fewer vectors), and the indices.
 std::size_t storage_bytes(const Encoding& encoding);
 
 }  // namespace prt::cpca
