@@ -19,7 +19,7 @@ struct Encoding {
   /// does not have are zero, and so are the weights of its points for them.
   std::vector<float> bases;
   /// Of adaptive CPCA, the number of PCA vectors of each cluster; else empty: component_count each.
-  std::vector<std::uint32_t> component_counts;
+  std::vector<std::uint32_t> component_counts = {};
   std::vector<std::uint32_t> cluster_of_point;  ///< point_count
   std::vector<float> weights;                   ///< point_count × component_count
 
