@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "inspect/compare.h"
 #include "inspect/compression_error.h"
+#include "inspect/hemisphere.h"
 #include "inspect/histogram.h"
 #include "inspect/inspection.h"
 
@@ -19,13 +20,14 @@ struct Options {
   fs::path file, transfer, plots, mask, noise, heatmap;
   std::vector<fs::path> compare;
   double heatmap_max = 0.0;
-  bool json = false;
+  bool json = false, hemisphere = false;
 };
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("FILE", options.file,
                  "Model (.glb, .gltf), transfer (.transfer.exr), light (.json) or image");
   app.add_flag("--json", options.json, "JSON instead of text");
+  app.add_flag("--hemisphere", options.hemisphere, "No file: errors of hemispherical projections");
   app.add_option("--transfer", options.transfer,
                  "Transfer that FILE was compressed from: reports the error, vertex by vertex")
       ->group("Compression error");
@@ -46,7 +48,9 @@ void add_options(CLI::App& app, Options& options) {
 
 void check_usage(const Options& options) {
   const auto reject = [](const char* what) { throw Error(ErrorKind::usage, what); };
-  if (options.file.empty() == options.compare.empty()) reject("name either FILE or --compare");
+  if (!options.file.empty() + !options.compare.empty() + options.hemisphere != 1) {
+    reject("name one of FILE, --compare and --hemisphere");
+  }
   if (!options.transfer.empty() && options.file.empty()) reject("--transfer needs FILE");
   if (!options.plots.empty() && options.transfer.empty()) reject("--plots needs --transfer");
   const bool of_comparison =
@@ -133,11 +137,9 @@ int main(int argc, char** argv) {
     const bool no_clobber = tool.common().no_clobber;
     inspect::Json json = inspect::Json::object();
     bool valid = true;
-    if (options.compare.empty()) {
-      valid = inspect_one(options, no_clobber, report, json);
-    } else {
-      compare_images(options, no_clobber, report, json);
-    }
+    if (options.hemisphere) json["hemisphere"] = inspect::hemisphere_table();
+    if (!options.file.empty()) valid = inspect_one(options, no_clobber, report, json);
+    if (!options.compare.empty()) compare_images(options, no_clobber, report, json);
     fmt::print("{}\n", options.json ? json.dump(2) : inspect::to_text(json));
     report.json()["result"] = json;
     if (!valid) {
