@@ -18,7 +18,4 @@ ClusterChunks make_cluster_chunks(std::span<const std::uint32_t> indices,
                                   std::span<const std::uint32_t> cluster_of_vertex,
                                   int cluster_count);
 
-/// Triangles in all chunks over triangles of the mesh: what drawing by clusters costs, 1 to 3.
-double overdraw(const ClusterChunks& chunks, std::size_t index_count);
-
 }  // namespace prt::runtime

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "cpca/overdraw.h"
 #include "runtime/cluster_chunks.h"
 #include "runtime/cluster_constants.h"
 #include "runtime/models.h"
@@ -65,8 +66,7 @@ TEST(ClusterChunks, HoldEveryTriangleOnceForEachClusterOfItsVertices) {
       found.emplace(cluster,
                     Triangle{chunks.indices[i], chunks.indices[i + 1], chunks.indices[i + 2]});
   EXPECT_EQ(found, expected);
-  EXPECT_GT(overdraw(chunks, mesh.indices.size()), 1.5);  // scattered clusters overlap a lot
-  EXPECT_LE(overdraw(chunks, mesh.indices.size()), 3.0);
+  EXPECT_EQ(chunks.indices.size(), 3 * cpca::sent_triangle_count(mesh.indices, cluster_of));
 }
 
 TEST(ClusterChunks, OneClusterIsTheMeshItself) {

@@ -1,0 +1,59 @@
+#include "cpca/coherence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "cpca/overdraw.h"
+#include "cpca/reclassify.h"
+#include "cpca/superclusters.h"
+
+namespace prt::cpca {
+
+namespace {
+
+void check(std::span<const float> signal, std::span<const std::uint32_t> indices,
+           const CoherenceOptions& options, const Encoding& encoding) {
+  if (!std::isfinite(options.error_budget) || options.error_budget < 0.0) {
+    throw Error(ErrorKind::usage, "error budget",
+                {.found = fmt::format("{}", options.error_budget), .expected = "at least 0"});
+  }
+  const auto n = static_cast<std::size_t>(encoding.dimension);
+  if (signal.size() != encoding.point_count * n) {
+    throw_failed("the encoding is of another signal",
+                 {.found = fmt::format("{} points", encoding.point_count),
+                  .expected = fmt::format("{}", signal.size() / n)});
+  }
+  const auto largest = std::max_element(indices.begin(), indices.end());
+  if (largest != indices.end() && *largest >= encoding.point_count) {
+    throw_failed("a triangle of a point that the encoding does not have",
+                 {.found = fmt::format("{}", *largest),
+                  .expected = fmt::format("less than {}", encoding.point_count)});
+  }
+}
+
+}  // namespace
+
+Coherence make_coherent(std::span<const float> signal, std::span<const std::uint32_t> indices,
+                        int row_count, const CoherenceOptions& options, Encoding& encoding) {
+  check(signal, indices, options, encoding);
+  Coherence coherence;
+  coherence.triangle_count = indices.size() / 3;
+  coherence.sent_initial = sent_triangle_count(indices, encoding.cluster_of_point);
+  const Reclassification moved = reclassify(signal, indices, options.error_budget, encoding);
+  coherence.moved_count = moved.moved_count;
+  coherence.initial_error = moved.initial_error;
+  coherence.final_error = moved.final_error;
+  coherence.sent_reclassified = sent_triangle_count(indices, encoding.cluster_of_point);
+  coherence.first_clusters = sort_clusters(
+      find_superclusters(indices, encoding.cluster_of_point, register_counts(encoding, row_count),
+                         options.register_budget),
+      encoding);
+  coherence.sent_superclustered =
+      sent_triangle_count(indices, superclusters_of_points(encoding, coherence.first_clusters));
+  return coherence;
+}
+
+}  // namespace prt::cpca

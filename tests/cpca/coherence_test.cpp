@@ -1,0 +1,347 @@
+// Cluster coherence against plain implementations that count everything anew at every step.
+#include "cpca/coherence.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "cpca/encoder.h"
+#include "cpca/meshes.h"
+#include "cpca/overdraw.h"
+#include "cpca/projection.h"
+#include "cpca/reclassify.h"
+#include "cpca/signals.h"
+#include "cpca/superclusters.h"
+
+namespace prt::cpca {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+std::size_t plain_sent_count(const Indices& indices, const Indices& labels) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    count += std::set{labels[indices[i]], labels[indices[i + 1]], labels[indices[i + 2]]}.size();
+  }
+  return count;
+}
+
+double total(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// A sheet whose signal varies smoothly in places and jumps in others, as transfer does.
+struct Sheet {
+  static constexpr std::uint32_t kColumns = 16, kRows = 13;
+  static constexpr int kDimension = 12;
+  std::vector<float> signal = std::vector<float>(kColumns * kRows * kDimension);
+  Indices indices = grid(kColumns, kRows);
+  Encoding encoding;
+
+  explicit Sheet(int cluster_count = 14, int component_count = 2) {
+    const auto noise = random_values(signal.size(), 5);
+    for (std::size_t i = 0; i < signal.size(); ++i) {
+      const std::size_t p = i / kDimension;
+      const auto x = static_cast<float>(p % kColumns), y = static_cast<float>(p / kColumns);
+      const auto k = static_cast<float>(i % kDimension);
+      signal[i] = std::sin(0.11f * (k + 1) * x) + std::cos(0.07f * k * y) + (x > y ? 0.4f : 0.0f) +
+                  0.3f * noise[i];
+    }
+    encoding = encode_static(signal, kDimension,
+                             {.cluster_count = cluster_count, .component_count = component_count})
+                   .encoding;
+  }
+};
+
+/// The same greedy search, every quotient computed anew before every move.
+Encoding plainly_reclassified(const Sheet& sheet, double error_budget) {
+  Encoding encoding = sheet.encoding;
+  const auto n = static_cast<std::size_t>(encoding.dimension);
+  double room = error_budget * total(point_errors(encoding, sheet.signal));
+  for (;;) {
+    const auto errors = point_errors(encoding, sheet.signal);
+    const auto sent = static_cast<int>(plain_sent_count(sheet.indices, encoding.cluster_of_point));
+    std::optional<Move> best;
+    for (std::uint32_t p = 0; p < encoding.point_count; ++p) {
+      std::set<std::uint32_t> candidates;
+      for (std::size_t i = 0; i < sheet.indices.size(); i += 3) {
+        const auto corner = sheet.indices.begin() + static_cast<std::ptrdiff_t>(i);
+        if (std::find(corner, corner + 3, p) == corner + 3) continue;
+        for (int j = 0; j < 3; ++j) candidates.insert(encoding.cluster_of_point[corner[j]]);
+      }
+      for (const std::uint32_t cluster : candidates) {
+        Indices labels = encoding.cluster_of_point;
+        labels[p] = cluster;
+        const int reduction = sent - static_cast<int>(plain_sent_count(sheet.indices, labels));
+        std::vector<float> weights(static_cast<std::size_t>(encoding.component_count));
+        const double error = project_point(encoding, static_cast<int>(cluster),
+                                           std::span(sheet.signal).subspan(p * n, n), weights);
+        const Move move{p, cluster, reduction, error - errors[p]};
+        if (reduction > 0 && move.increase <= room && (!best || is_better(move, *best))) {
+          best = move;
+        }
+      }
+    }
+    if (!best) return encoding;
+    room -= std::max(best->increase, 0.0);
+    encoding.cluster_of_point[best->point] = best->cluster;
+    const auto components = static_cast<std::size_t>(encoding.component_count);
+    project_point(encoding, static_cast<int>(best->cluster),
+                  std::span(sheet.signal).subspan(best->point * n, n),
+                  std::span(encoding.weights).subspan(best->point * components, components));
+  }
+}
+
+TEST(Overdraw, IsTheMeanNumberOfClustersOfATriangle) {
+  const Indices indices{0, 1, 2, 1, 2, 3, 2, 3, 4, 4, 4, 4};
+  const Indices labels{7, 7, 7, 9, 3};
+  EXPECT_EQ(sent_triangle_count(indices, labels), 1u + 2u + 3u + 1u);
+  EXPECT_DOUBLE_EQ(overdraw(sent_triangle_count(indices, labels), 4), 7.0 / 4.0);
+  EXPECT_EQ(overdraw(0, 0), 1.0);
+}
+
+TEST(ProjectPoint, GivesTheWeightsAndErrorsOfTheEncoder) {
+  const Sheet sheet;
+  const auto errors = point_errors(sheet.encoding, sheet.signal);
+  std::vector<float> weights(2);
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    const auto x = std::span(sheet.signal).subspan(p * Sheet::kDimension, Sheet::kDimension);
+    const auto cluster = static_cast<int>(sheet.encoding.cluster_of_point[p]);
+    EXPECT_NEAR(project_point(sheet.encoding, cluster, x, weights), errors[p], 1e-5);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(weights[i], sheet.encoding.weights[2 * p + i], 1e-5);
+    }
+  }
+}
+
+TEST(Reclassify, IsThePlainGreedySearch) {
+  for (const double budget : {0.0, 0.01, 0.05, 0.3}) {
+    Sheet sheet;
+    const Encoding expected = plainly_reclassified(sheet, budget);
+    const Reclassification found = reclassify(sheet.signal, sheet.indices, budget, sheet.encoding);
+    EXPECT_EQ(sheet.encoding.cluster_of_point, expected.cluster_of_point) << budget;
+    EXPECT_EQ(sheet.encoding.weights, expected.weights) << budget;
+    if (budget > 0.0) {
+      EXPECT_GT(found.moved_count, 5u);
+    }
+  }
+}
+
+TEST(Reclassify, KeepsWithinTheBudgetAndSendsFewerTrianglesForMore) {
+  double last_sent = 1e9;
+  for (const double budget : {0.0, 0.02, 0.05, 0.1, 1.0}) {
+    Sheet sheet(30, 3);
+    const std::size_t before = sent_triangle_count(sheet.indices, sheet.encoding.cluster_of_point);
+    const Reclassification moved = reclassify(sheet.signal, sheet.indices, budget, sheet.encoding);
+    const std::size_t after = sent_triangle_count(sheet.indices, sheet.encoding.cluster_of_point);
+    EXPECT_LE(after, before);
+    EXPECT_LE(static_cast<double>(after), last_sent);
+    last_sent = static_cast<double>(after);
+    EXPECT_LE(moved.final_error, (1.0 + budget) * moved.initial_error * (1 + 1e-12));
+    EXPECT_NEAR(moved.final_error, total(point_errors(sheet.encoding, sheet.signal)),
+                1e-9 * moved.final_error);
+  }
+  EXPECT_GT(last_sent, 0.0);
+}
+
+TEST(Reclassify, TakesWhatReducesTheErrorFirstAndForFree) {
+  Sheet sheet;
+  const double before = total(point_errors(sheet.encoding, sheet.signal));
+  const Reclassification moved = reclassify(sheet.signal, sheet.indices, 0.0, sheet.encoding);
+  EXPECT_GT(moved.moved_count, 0u);
+  EXPECT_LT(total(point_errors(sheet.encoding, sheet.signal)), before);
+}
+
+TEST(Reclassify, WeightsOfVectorsThatAClusterLacksAreZero) {
+  Sheet sheet(14, 3);
+  Encoding& encoding = sheet.encoding;
+  for (int k = 0; k < encoding.cluster_count; ++k) {
+    encoding.component_counts.push_back(static_cast<std::uint32_t>(k % 4));
+    for (int i = k % 4; i < 3; ++i) {
+      const auto basis = encoding.basis(k, i);
+      std::fill_n(encoding.bases.begin() + (basis.data() - encoding.bases.data()), basis.size(),
+                  0.0f);
+    }
+  }
+  for (std::size_t p = 0; p < encoding.point_count; ++p) {
+    for (std::size_t i = encoding.component_counts[encoding.cluster_of_point[p]]; i < 3; ++i) {
+      encoding.weights[3 * p + i] = 0.0f;
+    }
+  }
+  ASSERT_GT(reclassify(sheet.signal, sheet.indices, 0.1, encoding).moved_count, 5u);
+  for (std::size_t p = 0; p < encoding.point_count; ++p) {
+    for (std::size_t i = encoding.component_counts[encoding.cluster_of_point[p]]; i < 3; ++i) {
+      EXPECT_EQ(encoding.weights[3 * p + i], 0.0f);
+    }
+  }
+}
+
+TEST(Reclassify, IsTheSameForAnyNumberOfThreads) {
+  Sheet one(40, 2), many(40, 2);
+  set_thread_count(1);
+  reclassify(one.signal, one.indices, 0.05, one.encoding);
+  set_thread_count(4);
+  reclassify(many.signal, many.indices, 0.05, many.encoding);
+  set_thread_count(0);
+  EXPECT_EQ(one.encoding.cluster_of_point, many.encoding.cluster_of_point);
+  EXPECT_EQ(one.encoding.weights, many.encoding.weights);
+}
+
+/// Pairs merged one by one, everything counted anew.
+Indices plain_superclusters(const Indices& indices, const Indices& cluster_of_point,
+                            const Indices& registers, std::uint32_t budget) {
+  Indices group(registers.size());
+  std::iota(group.begin(), group.end(), 0u);
+  for (;;) {
+    Indices labels, sizes(registers.size());
+    for (const std::uint32_t cluster : cluster_of_point) labels.push_back(group[cluster]);
+    for (std::size_t k = 0; k < group.size(); ++k) sizes[group[k]] += registers[k];
+    std::size_t best_gain = 0;
+    std::uint32_t best_low = 0, best_high = 0;
+    for (std::uint32_t low = 0; low < group.size(); ++low) {
+      for (std::uint32_t high = low + 1; high < group.size(); ++high) {
+        if (sizes[low] == 0 || sizes[high] == 0 || sizes[low] + sizes[high] > budget) continue;
+        Indices merged = labels;
+        std::replace(merged.begin(), merged.end(), high, low);
+        const std::size_t gain =
+            plain_sent_count(indices, labels) - plain_sent_count(indices, merged);
+        if (gain <= best_gain) continue;
+        best_gain = gain;
+        best_low = low;
+        best_high = high;
+      }
+    }
+    if (best_gain == 0) break;
+    std::replace(group.begin(), group.end(), best_high, best_low);
+  }
+  Indices numbers = group;  // groups are named by their lowest cluster
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  for (std::uint32_t& g : group) {
+    g = static_cast<std::uint32_t>(std::lower_bound(numbers.begin(), numbers.end(), g) -
+                                   numbers.begin());
+  }
+  return group;
+}
+
+TEST(Superclusters, AreThoseOfThePlainGreedySearch) {
+  const Sheet sheet(25, 3);
+  Indices registers = register_counts(sheet.encoding, 1);
+  EXPECT_EQ(registers, Indices(25, 4u));
+  registers[3] = 9;  // adaptive clusters differ
+  for (const std::uint32_t budget : {1u, 8u, 16u, 29u, 256u}) {
+    const Indices found =
+        find_superclusters(sheet.indices, sheet.encoding.cluster_of_point, registers, budget);
+    EXPECT_EQ(found, plain_superclusters(sheet.indices, sheet.encoding.cluster_of_point, registers,
+                                         budget))
+        << budget;
+    const std::uint32_t count = *std::max_element(found.begin(), found.end()) + 1;
+    if (budget == 1) {
+      EXPECT_EQ(count, 25u);
+    }  // nothing fits, everything stays
+    if (budget == 256) {
+      EXPECT_EQ(count, 1u);
+    }  // the sheet is connected
+    for (std::uint32_t s = 0; s < count && budget >= 9; ++s) {
+      std::uint32_t size = 0;
+      for (std::size_t k = 0; k < 25; ++k) size += found[k] == s ? registers[k] : 0;
+      EXPECT_LE(size, budget);
+    }
+  }
+}
+
+TEST(Superclusters, NeedTheRegistersOfThePaper) {
+  // [Sloan03] §6.2: m_s (n' + 1) for diffuse, m_s (n' + 1) N_r / 4 for glossy transfer.
+  Encoding encoding;
+  encoding.cluster_count = 2;
+  encoding.component_count = 8;
+  EXPECT_EQ(register_counts(encoding, 1), Indices({9, 9}));
+  EXPECT_EQ(register_counts(encoding, 16), Indices({36, 36}));
+  EXPECT_EQ(register_counts(encoding, 25), Indices({63, 63}));
+  encoding.component_counts = {0, 8};
+  EXPECT_EQ(register_counts(encoding, 1), Indices({1, 9}));
+}
+
+TEST(Superclusters, SortingClustersLeavesTheReconstruction) {
+  Sheet sheet(25, 3);
+  sheet.encoding.component_counts.assign(25, 3);
+  sheet.encoding.component_counts[7] = 2;
+  const Encoding before = sheet.encoding;
+  const Indices superclusters =
+      find_superclusters(sheet.indices, before.cluster_of_point, register_counts(before, 1), 20);
+  const Indices first = sort_clusters(superclusters, sheet.encoding);
+  EXPECT_NE(sheet.encoding.cluster_of_point, before.cluster_of_point);
+  std::vector<float> expected(Sheet::kDimension), found(Sheet::kDimension);
+  for (std::size_t p = 0; p < before.point_count; ++p) {
+    reconstruct(before, p, expected);
+    reconstruct(sheet.encoding, p, found);
+    EXPECT_EQ(found, expected);
+  }
+  Indices labels;
+  for (const std::uint32_t cluster : before.cluster_of_point) {
+    labels.push_back(superclusters[cluster]);
+  }
+  EXPECT_EQ(superclusters_of_points(sheet.encoding, first), labels);
+  EXPECT_TRUE(std::is_sorted(first.begin(), first.end()));
+  EXPECT_EQ(first.front(), 0u);
+}
+
+TEST(Coherence, OverdrawFallsStepByStep) {
+  Sheet sheet(30, 3);
+  const Coherence coherence =
+      make_coherent(sheet.signal, sheet.indices, 1, {.register_budget = 32}, sheet.encoding);
+  EXPECT_EQ(coherence.triangle_count, sheet.indices.size() / 3);
+  EXPECT_LT(coherence.sent_reclassified, coherence.sent_initial);
+  EXPECT_LT(coherence.sent_superclustered, coherence.sent_reclassified);
+  EXPECT_GE(coherence.sent_superclustered, coherence.triangle_count);
+  EXPECT_EQ(coherence.sent_reclassified,
+            plain_sent_count(sheet.indices, sheet.encoding.cluster_of_point));
+  EXPECT_LE(coherence.final_error, 1.05 * coherence.initial_error);
+}
+
+TEST(Coherence, DegenerateMeshesAreLeftAlone) {
+  Sheet sheet(14, 2);
+  const Encoding before = sheet.encoding;
+  const Coherence nothing = make_coherent(sheet.signal, {}, 1, {}, sheet.encoding);
+  EXPECT_EQ(nothing.moved_count + nothing.triangle_count + nothing.sent_superclustered, 0u);
+  EXPECT_EQ(nothing.first_clusters.size(), 14u);
+  EXPECT_EQ(sheet.encoding.cluster_of_point, before.cluster_of_point);
+  // Triangles that are points or edges, and one that is given three times.
+  const Indices odd{0, 0, 0, 1, 1, 2, 3, 4, 5, 3, 4, 5, 5, 4, 3};
+  const Coherence coherence =
+      make_coherent(sheet.signal, odd, 1, {.error_budget = 10.0}, sheet.encoding);
+  EXPECT_LE(coherence.sent_reclassified, coherence.sent_initial);
+  EXPECT_EQ(coherence.sent_reclassified, plain_sent_count(odd, sheet.encoding.cluster_of_point));
+  Sheet one(1, 2);
+  EXPECT_EQ(make_coherent(one.signal, one.indices, 1, {}, one.encoding).sent_initial,
+            one.indices.size() / 3);
+}
+
+TEST(Coherence, AnEdgeOfManyTrianglesIsAnEdgeLikeOthers) {
+  Sheet sheet(14, 2);
+  Indices fan;  // 0 and 1 belong to every triangle
+  for (std::uint32_t p = 2; p < 200; ++p) fan.insert(fan.end(), {0, 1, p});
+  const Reclassification moved = reclassify(sheet.signal, fan, 0.2, sheet.encoding);
+  EXPECT_GT(moved.moved_count, 0u);
+  EXPECT_LE(moved.final_error, 1.2 * moved.initial_error);
+}
+
+TEST(Coherence, RefusesBudgetsAndMeshesThatMakeNoSense) {
+  Sheet sheet;
+  const auto run = [&](const std::vector<float>& signal, const Indices& indices, double budget) {
+    make_coherent(signal, indices, 1, {.error_budget = budget}, sheet.encoding);
+  };
+  EXPECT_THROW(run(sheet.signal, sheet.indices, -0.1), Error);
+  EXPECT_THROW(run(sheet.signal, sheet.indices, NAN), Error);
+  EXPECT_THROW(run(sheet.signal, {0, 1, Sheet::kColumns * Sheet::kRows}, 0.05), Error);
+  EXPECT_THROW(run(std::vector<float>(Sheet::kDimension), sheet.indices, 0.05), Error);
+}
+
+}  // namespace
+}  // namespace prt::cpca
