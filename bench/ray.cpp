@@ -193,7 +193,7 @@ std::vector<RTCRay> embree_rays(const std::vector<Ray>& rays) {
 Rate measure_engine(const ray::Engine& engine, const std::vector<Ray>& rays) {
   return measure(rays.size(), [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint8_t> blocked(end - begin);
-    engine.occluded({&rays[begin], end - begin}, blocked, ray::Coherence::coherent);
+    engine.occluded({&rays[begin], end - begin}, blocked);
     return static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), 1));
   });
 }
@@ -229,13 +229,17 @@ void run_interleaved(std::vector<Mode>& modes) {
 /// Modes of one scene. Packets of 4 and other orders of the rays were never the fastest.
 void add_modes(const std::string& name, const BareEmbree& embree, const std::vector<RTCRay>& rays,
                std::vector<Mode>& modes) {
-  modes.push_back({name + ", packets of 16, coherent",
-                   [&] { return embree.packets<RTCRay16, 16>(rays, true, rtcOccluded16); }});
-  modes.push_back({name + ", packets of 16, incoherent",
-                   [&] { return embree.packets<RTCRay16, 16>(rays, false, rtcOccluded16); }});
-  modes.push_back({name + ", packets of 8, coherent",
-                   [&] { return embree.packets<RTCRay8, 8>(rays, true, rtcOccluded8); }});
-  modes.push_back({name + ", streams of 64, coherent", [&] { return embree.stream(rays, true); }});
+  for (const bool coherent : {true, false}) {
+    const std::string suffix = coherent ? ", coherent" : ", incoherent";
+    modes.push_back({name + ", packets of 16" + suffix, [&, coherent] {
+                       return embree.packets<RTCRay16, 16>(rays, coherent, rtcOccluded16);
+                     }});
+    modes.push_back({name + ", packets of 8" + suffix, [&, coherent] {
+                       return embree.packets<RTCRay8, 8>(rays, coherent, rtcOccluded8);
+                     }});
+    modes.push_back({name + ", streams of 64" + suffix,
+                     [&, coherent] { return embree.stream(rays, coherent); }});
+  }
   modes.push_back({name + ", single", [&] { return embree.single(rays, false); }});
 }
 

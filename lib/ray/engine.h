@@ -1,5 +1,6 @@
 // Batches of rays against a set of triangles: one interface, several engines (Embree first). All
-// calls are thread safe, deterministic, and do not allocate; a batch runs on the calling thread.
+// calls are thread safe, deterministic, and do not allocate; a batch runs on the calling thread, 16
+// rays at a time: fastest when those have about the same origin and direction.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +31,6 @@ struct Hit {
   bool back_face = false;    ///< the ray came from behind (clockwise side)
 };
 
-/// What is known about neighbours in a batch: engines are faster on coherent ones (rays of about
-/// the same origin and direction, 16 by 16). It changes the speed, never a result.
-enum class Coherence { incoherent, coherent };
-
 /// Coordinates larger than this are refused: Embree silently ignores such triangles.
 constexpr float kMaxCoordinate = 1e18f;
 
@@ -53,11 +50,9 @@ class Engine {
  public:
   virtual ~Engine() = default;
   /// hits.size() == rays.size(). Where nothing is hit, triangle is kNoHit.
-  virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits,
-                           Coherence coherence) const = 0;
+  virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
   /// occluded[i] = 1 when anything, front or back, lies in (t_near, t_far], else 0.
-  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
-                        Coherence coherence) const = 0;
+  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const = 0;
   /// Many rays from one origin, the chosen ones (numbers) of a list of directions: occluded[i] = 1
   /// when anything lies along the i-th chosen one, t > 0, else 0. Neighbours in `chosen` should be
   /// neighbours on the sphere. occluded.size() >= chosen.size().

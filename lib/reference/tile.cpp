@@ -92,7 +92,7 @@ void Tile::shoot(int samples_per_pixel) {
     }
   }
   hits_.resize(rays_.size());
-  job_.engine.closest_hit(rays_, hits_, ray::Coherence::coherent);
+  job_.engine.closest_hit(rays_, hits_);
   rays_cast_ += rays_.size();
   const int weight = centers ? job_.sample_count : 1;
   for (std::size_t i = 0; i < hits_.size(); ++i) {
@@ -150,10 +150,10 @@ void Tile::scatter(int bounce) {
   blocked_.resize(rays_.size());
   const bool last = bounce == job_.options.bounce_count;
   if (last) {
-    job_.engine.occluded(rays_, blocked_, ray::Coherence::incoherent);
+    job_.engine.occluded(rays_, blocked_);
   } else {
     hits_.resize(rays_.size());
-    job_.engine.closest_hit(rays_, hits_, ray::Coherence::incoherent);
+    job_.engine.closest_hit(rays_, hits_);
     for (std::size_t i = 0; i < hits_.size(); ++i) blocked_[i] = hits_[i].triangle != ray::kNoHit;
   }
   escapes_.clear();
@@ -191,7 +191,7 @@ void Tile::scatter_to_light(int bounce) {
   }
   rays_cast_ += rays_.size();
   blocked_.resize(rays_.size());
-  job_.engine.occluded(rays_, blocked_, ray::Coherence::incoherent);
+  job_.engine.occluded(rays_, blocked_);
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     if (blocked_[i]) escapes_.weights[i] = Vec3(0.0f);
   }

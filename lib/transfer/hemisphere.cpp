@@ -53,7 +53,7 @@ std::span<const ray::Hit> Hemisphere::hits() {
     rays_[i].origin = origin_;
     rays_[i].direction = directions_[blocked_[i].row];
   }
-  index_.engine().closest_hit({rays_.data(), blocked_count_}, hits_, ray::Coherence::coherent);
+  index_.engine().closest_hit({rays_.data(), blocked_count_}, hits_);
   rays_cast_ += blocked_count_;
   return hits_;
 }
@@ -65,7 +65,7 @@ std::span<const ray::Hit> Hemisphere::trace_closest(std::size_t vertex) {
     rays_[i].origin = origin_;
     rays_[i].direction = directions_[above_[i]];
   }
-  index_.engine().closest_hit({rays_.data(), count}, hits_, ray::Coherence::coherent);
+  index_.engine().closest_hit({rays_.data(), count}, hits_);
   return hits_;
 }
 

@@ -75,7 +75,7 @@ std::vector<Ray> random_rays(std::size_t count, std::uint64_t seed) {
   return rays;
 }
 
-/// Rays of one direction from neighbouring points, as the coherent mode expects them.
+/// Rays of one direction from neighbouring points.
 std::vector<Ray> parallel_rays(std::size_t count, std::uint64_t seed) {
   Pcg32 random(seed);
   std::vector<Ray> rays(count);
@@ -91,12 +91,12 @@ std::vector<Ray> parallel_rays(std::size_t count, std::uint64_t seed) {
   return rays;
 }
 
-void expect_agrees_with_plain(const Soup& soup, const std::vector<Ray>& rays, Coherence coherence) {
+void expect_agrees_with_plain(const Soup& soup, const std::vector<Ray>& rays) {
   const auto engine = make_embree_engine(soup.triangles());
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> blocked(rays.size());
-  engine->closest_hit(rays, hits, coherence);
-  engine->occluded(rays, blocked, coherence);
+  engine->closest_hit(rays, hits);
+  engine->occluded(rays, blocked);
   std::size_t compared = 0, hit_count = 0, back_count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Expected expected = plain_closest(soup, rays[i]);
@@ -120,10 +120,8 @@ void expect_agrees_with_plain(const Soup& soup, const std::vector<Ray>& rays, Co
 
 TEST(EmbreeEngine, FindsTheHitsOfAPlainIntersector) {
   const Soup soup = random_soup(400, 0.3f, 7);
-  expect_agrees_with_plain(soup, random_rays(4001, 11), Coherence::incoherent);
-  expect_agrees_with_plain(soup, random_rays(4001, 11), Coherence::coherent);
-  expect_agrees_with_plain(soup, parallel_rays(4001, 12), Coherence::incoherent);
-  expect_agrees_with_plain(soup, parallel_rays(4001, 12), Coherence::coherent);
+  expect_agrees_with_plain(soup, random_rays(4001, 11));
+  expect_agrees_with_plain(soup, parallel_rays(4001, 12));
 }
 
 TEST(EmbreeEngine, FrontIsTheCounterClockwiseSide) {
@@ -132,7 +130,7 @@ TEST(EmbreeEngine, FrontIsTheCounterClockwiseSide) {
   const std::vector<Ray> rays = {{{0.2f, 0.3f, 1}, 0, {0, 0, -2}},
                                  {{0.2f, 0.3f, -1}, 0, {0, 0, 2}}};
   std::vector<Hit> hits(2);
-  engine->closest_hit(rays, hits, Coherence::incoherent);
+  engine->closest_hit(rays, hits);
   EXPECT_FALSE(hits[0].back_face);
   EXPECT_TRUE(hits[1].back_face);
   for (const Hit& hit : hits) {
@@ -142,7 +140,7 @@ TEST(EmbreeEngine, FrontIsTheCounterClockwiseSide) {
   }
 }
 
-TEST(EmbreeEngine, ResultsDoNotDependOnCoherenceOrBatchSize) {
+TEST(EmbreeEngine, ResultsDoNotDependOnBatchSize) {
   const Soup soup = random_soup(2000, 0.2f, 3);
   const auto engine = make_embree_engine(soup.triangles());
   std::vector<Ray> rays = random_rays(700, 5);
@@ -150,22 +148,20 @@ TEST(EmbreeEngine, ResultsDoNotDependOnCoherenceOrBatchSize) {
   rays.insert(rays.end(), parallel.begin(), parallel.end());
   std::vector<Hit> whole(rays.size());
   std::vector<std::uint8_t> whole_blocked(rays.size());
-  engine->closest_hit(rays, whole, Coherence::incoherent);
-  engine->occluded(rays, whole_blocked, Coherence::incoherent);
+  engine->closest_hit(rays, whole);
+  engine->occluded(rays, whole_blocked);
   for (std::size_t size : {1, 2, 7, 15, 16, 17, 31, 33, 700}) {
-    for (Coherence coherence : {Coherence::incoherent, Coherence::coherent}) {
-      for (std::size_t first = 0; first < rays.size(); first += size) {
-        const std::size_t count = std::min(size, rays.size() - first);
-        std::vector<Hit> hits(count);
-        std::vector<std::uint8_t> blocked(count, 2);
-        const std::span<const Ray> batch(rays.data() + first, count);
-        engine->closest_hit(batch, hits, coherence);
-        engine->occluded(batch, blocked, coherence);
-        for (std::size_t i = 0; i < count; ++i) {
-          ASSERT_EQ(hits[i].triangle, whole[first + i].triangle);
-          ASSERT_NEAR(hits[i].t, whole[first + i].t, 1e-5f);
-          ASSERT_EQ(blocked[i], whole_blocked[first + i]);
-        }
+    for (std::size_t first = 0; first < rays.size(); first += size) {
+      const std::size_t count = std::min(size, rays.size() - first);
+      std::vector<Hit> hits(count);
+      std::vector<std::uint8_t> blocked(count, 2);
+      const std::span<const Ray> batch(rays.data() + first, count);
+      engine->closest_hit(batch, hits);
+      engine->occluded(batch, blocked);
+      for (std::size_t i = 0; i < count; ++i) {
+        ASSERT_EQ(hits[i].triangle, whole[first + i].triangle);
+        ASSERT_NEAR(hits[i].t, whole[first + i].t, 1e-5f);
+        ASSERT_EQ(blocked[i], whole_blocked[first + i]);
       }
     }
   }
@@ -190,7 +186,7 @@ TEST(EmbreeEngine, RaysFromOneOriginAreTheSameRays) {
       rays[i].direction = Vec3(x[chosen[i]], y[chosen[i]], z[chosen[i]]);
     }
     std::vector<std::uint8_t> expected(count), found(count + 1, 2);
-    engine->occluded(rays, expected, Coherence::incoherent);
+    engine->occluded(rays, expected);
     expected.push_back(2);  // what is not asked for stays
     engine->occluded_from(origin, {x, y, z}, chosen, found);
     EXPECT_EQ(found, expected);
@@ -202,13 +198,13 @@ TEST(EmbreeEngine, RaysFromOneOriginAreTheSameRays) {
 
 TEST(EmbreeEngine, EmptyBatchAndEmptySceneHitNothing) {
   const auto engine = make_embree_engine({});
-  engine->closest_hit({}, {}, Coherence::coherent);
-  engine->occluded({}, {}, Coherence::coherent);
+  engine->closest_hit({}, {});
+  engine->occluded({}, {});
   const std::vector<Ray> rays(19, {{0, 0, 0}, 0, {0, 0, 1}});
   std::vector<Hit> hits(19, {5});
   std::vector<std::uint8_t> blocked(19, 1);
-  engine->closest_hit(rays, hits, Coherence::incoherent);
-  engine->occluded(rays, blocked, Coherence::incoherent);
+  engine->closest_hit(rays, hits);
+  engine->occluded(rays, blocked);
   for (const Hit& hit : hits) EXPECT_EQ(hit.triangle, kNoHit);
   for (std::uint8_t b : blocked) EXPECT_EQ(b, 0);
 }
@@ -231,12 +227,10 @@ std::size_t escaped_count(const Soup& soup, const Vec3& centre, const Target& ta
   std::size_t escaped = 0;
   std::vector<std::uint8_t> blocked(rays.size());
   std::vector<Hit> hits(rays.size());
-  for (Coherence coherence : {Coherence::incoherent, Coherence::coherent}) {
-    engine->occluded(rays, blocked, coherence);
-    engine->closest_hit(rays, hits, coherence);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      escaped += !blocked[i] || hits[i].triangle == kNoHit || !hits[i].back_face;
-    }
+  engine->occluded(rays, blocked);
+  engine->closest_hit(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    escaped += !blocked[i] || hits[i].triangle == kNoHit || !hits[i].back_face;
   }
   return escaped;
 }
@@ -273,7 +267,7 @@ TEST(EmbreeEngine, ThreadsShareOneEngine) {
   std::vector<std::vector<Hit>> hits(4, std::vector<Hit>(rays.size()));
   std::vector<std::thread> threads;
   for (auto& mine : hits) {
-    threads.emplace_back([&] { engine->closest_hit(rays, mine, Coherence::incoherent); });
+    threads.emplace_back([&] { engine->closest_hit(rays, mine); });
   }
   for (std::thread& thread : threads) thread.join();
   for (std::size_t k = 1; k < hits.size(); ++k) {

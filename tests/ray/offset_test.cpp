@@ -34,7 +34,7 @@ std::size_t wrong_rays(const Soup& soup, const Vec3& centre, bool outward) {
     }
   }
   std::vector<std::uint8_t> blocked(rays.size());
-  engine->occluded(rays, blocked, Coherence::incoherent);
+  engine->occluded(rays, blocked);
   EXPECT_GT(rays.size(), 1000u);
   return static_cast<std::size_t>(
       std::count(blocked.begin(), blocked.end(), outward ? std::uint8_t{1} : std::uint8_t{0}));

@@ -44,7 +44,7 @@ class CpuPixels {
     ray.direction = view_.camera.ray_direction((2 * static_cast<float>(x) + 1) / kWidth - 1,
                                                1 - (2 * static_cast<float>(y) + 1) / kHeight);
     ray::Hit hit;
-    engine_->closest_hit({&ray, 1}, {&hit, 1}, ray::Coherence::incoherent);
+    engine_->closest_hit({&ray, 1}, {&hit, 1});
     return hit;
   }
   Vec3 vertex(std::uint32_t index) const {
