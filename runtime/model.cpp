@@ -30,7 +30,7 @@ void check_belongs_to(const gltf::PrecomputedTransfer& transfer, const mesh::Sce
                    .element = "meshHash",
                    .found = transfer.mesh_hash,
                    .expected = hash,
-                   .advice = "The geometry was changed after baking: run prt-transfer and "
+                   .advice = "Geometry or colours were changed after baking: run prt-transfer and "
                              "prt-compress again."});
 }
 

@@ -142,6 +142,7 @@ int main(int argc, char** argv) {
                  "prt-compress a.glb a.transfer.exr -o a.prt.glb --clusters 256 --components 8");
   Arguments arguments;
   add_options(tool.app(), arguments);
+  tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) {
     compress(arguments, tool.common(), report);
     log_summary(report.json());

@@ -16,6 +16,7 @@ constexpr std::pair<const char*, std::size_t RepairReport::*> kRepairKeys[] = {
     {"degenerate_triangle_count", &RepairReport::degenerate_triangle_count},
     {"duplicate_triangle_count", &RepairReport::duplicate_triangle_count},
     {"computed_normal_count", &RepairReport::computed_normal_count},
+    {"split_vertex_count", &RepairReport::split_vertex_count},
     {"nonmanifold_triangle_count", &RepairReport::nonmanifold_triangle_count},
     {"nonmanifold_vertex_count", &RepairReport::nonmanifold_vertex_count},
     {"boundary_edge_count", &RepairReport::boundary_edge_count}};
@@ -45,6 +46,79 @@ void report_meshes(prt::Report& report, const std::vector<prt::gltf::ImportedMes
   for (const auto& [key, member] : kRepairKeys) {
     if (total.repair.*member > 0) prt::log::info("  {}: {}", key, total.repair.*member);
   }
+  if (total.repair.computed_normal_count > 0) {
+    prt::log::info(
+        "  computed normals {} (--crease-angle changes that)",
+        total.repair.split_vertex_count > 0 ? "keep sharp edges hard" : "are smooth all over");
+  }
+}
+
+struct Arguments {
+  std::filesystem::path input, output;
+  prt::gltf::ImportOptions options;
+  std::vector<float> base_color;
+  std::string up = "y";
+};
+
+void add_geometry_options(CLI::App& app, Arguments& arguments) {
+  prt::mesh::PrepareOptions& prepare = arguments.options.prepare;
+  const char* group = "Geometry";
+  app.add_option("--max-edge", prepare.max_edge,
+                 "Split edges longer than this many metres; 0: none")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  app.add_option("--max-triangles", prepare.max_triangles,
+                 "Fail when splitting makes more, per mesh")
+      ->group(group);
+  app.add_option("--crease-angle", prepare.repair.crease_angle_degrees,
+                 "Computed normals: edges sharper than this many degrees stay hard; 180: none; "
+                 "auto: 60, or none in a scan, where they are few")
+      ->check(CLI::Range(0.0, 180.0))
+      ->default_str("auto")
+      ->group(group);
+  app.add_flag("--recompute-normals", prepare.repair.recompute_normals,
+               "Compute normals even where the file has them")
+      ->group(group);
+  app.add_option("--unit", arguments.options.metres_per_unit, "Metres per unit of a mesh file")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app.add_option("--up", arguments.up, "Axis that points up in a mesh file")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->group(group);
+}
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("input", arguments.input, "Model to read")->required();
+  app.add_option("-o,--output", arguments.output, ".glb to write")->required();
+  app.add_option("--base-color", arguments.base_color,
+                 "Linear R,G,B in 0..1 of what has no material of its own")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(CLI::Range(0.0, 1.0))
+      ->group("Material");
+  add_geometry_options(app, arguments);
+  prt::gltf::Limits& limits = arguments.options.limits;
+  app.add_option("--max-input-bytes", limits.max_file_bytes, "Largest file to read")
+      ->group("Limits");
+  app.add_option("--max-image-pixels", limits.max_image_pixels, "Largest texture to read")
+      ->group("Limits");
+}
+
+void import(Arguments& arguments, const prt::cli::CommonOptions& common, prt::Report& report) {
+  prt::gltf::ImportOptions& options = arguments.options;
+  const std::vector<float>& color = arguments.base_color;
+  options.up = arguments.up == "z" ? prt::mesh::UpAxis::z : prt::mesh::UpAxis::y;
+  if (!color.empty()) options.base_color = {color[0], color[1], color[2]};
+  prt::cli::check_paths({arguments.input}, {{arguments.output, {".glb"}, arguments.input}}, common);
+  std::optional<prt::StageTimer> stage(std::in_place, report, "import");
+  const prt::gltf::ImportResult result = prt::gltf::import_file(arguments.input, options);
+  stage.reset();
+  report.add_input(arguments.input);
+  report_meshes(report, result.meshes);
+  stage.emplace(report, "write");
+  result.document.save_glb(arguments.output, common.no_clobber);
+  stage.reset();
+  report.add_output(arguments.output);
 }
 
 }  // namespace
@@ -54,64 +128,8 @@ int main(int argc, char** argv) {
                       "Reads a model (.obj .ply .off .stl .gltf .glb), checks and repairs it, and "
                       "writes a .glb that the other tools can bake.",
                       "prt-import bunny.obj -o bunny.glb --base-color 0.7,0.7,0.7");
-  std::filesystem::path input, output;
-  prt::gltf::ImportOptions options;
-  std::vector<float> base_color;
-  std::string up = "y";
-  CLI::App& app = tool.app();
-  app.add_option("input", input, "Model to read")->required();
-  app.add_option("-o,--output", output, ".glb to write")->required();
-
-  app.add_option("--base-color", base_color,
-                 "Linear R,G,B in 0..1 of what has no material of its own")
-      ->delimiter(',')
-      ->expected(3)
-      ->check(CLI::Range(0.0, 1.0))
-      ->group("Material");
-
-  const char* geometry = "Geometry";
-  app.add_option("--max-edge", options.prepare.max_edge,
-                 "Split edges longer than this many metres; 0: none")
-      ->check(CLI::NonNegativeNumber)
-      ->group(geometry);
-  app.add_option("--max-triangles", options.prepare.max_triangles,
-                 "Fail when splitting makes more, per mesh")
-      ->group(geometry);
-  app.add_option("--crease-angle", options.prepare.repair.crease_angle_degrees,
-                 "Computed normals: edges sharper than this many degrees stay hard; 180: none")
-      ->check(CLI::Range(0.0, 180.0))
-      ->group(geometry);
-  app.add_flag("--recompute-normals", options.prepare.repair.recompute_normals,
-               "Compute normals even where the file has them")
-      ->group(geometry);
-  app.add_option("--unit", options.metres_per_unit, "Metres per unit of a mesh file")
-      ->check(CLI::PositiveNumber)
-      ->group(geometry);
-  app.add_option("--up", up, "Axis that points up in a mesh file")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->group(geometry);
-
-  const char* limits = "Limits";
-  app.add_option("--max-input-bytes", options.limits.max_file_bytes, "Largest file to read")
-      ->group(limits);
-  app.add_option("--max-image-pixels", options.limits.max_image_pixels, "Largest texture to read")
-      ->group(limits);
-
-  return tool.run(argc, argv, [&](prt::Report& report) {
-    options.up = up == "z" ? prt::mesh::UpAxis::z : prt::mesh::UpAxis::y;
-    if (!base_color.empty()) options.base_color = {base_color[0], base_color[1], base_color[2]};
-    prt::cli::check_paths({input}, {{output, {".glb"}, input}}, tool.common());
-    std::optional<prt::gltf::ImportResult> result;
-    {
-      const prt::StageTimer timer(report, "import");
-      result = prt::gltf::import_file(input, options);
-    }
-    report.add_input(input);
-    report_meshes(report, result->meshes);
-    {
-      const prt::StageTimer timer(report, "write");
-      result->document.save_glb(output, tool.common().no_clobber);
-    }
-    report.add_output(output);
-  });
+  Arguments arguments;
+  add_options(tool.app(), arguments);
+  return tool.run(argc, argv,
+                  [&](prt::Report& report) { import(arguments, tool.common(), report); });
 }

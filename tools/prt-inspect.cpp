@@ -58,6 +58,9 @@ void check_usage(const Options& options) {
   if (of_comparison && options.compare.empty()) {
     reject("--mask, --noise and --heatmap need --compare");
   }
+  if (options.heatmap_max > 0.0 && options.heatmap.empty()) {
+    reject("--heatmap-max needs --heatmap");
+  }
 }
 
 void check_files(const Options& options, const cli::CommonOptions& common) {

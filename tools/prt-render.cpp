@@ -6,6 +6,8 @@
 
 #include "cli/paths.h"
 #include "cli/tool.h"
+#include "gl/context.h"
+#include "ray/engine.h"
 #include "runtime/reference/reference_job.h"
 #include "runtime/render_job.h"
 
@@ -100,15 +102,23 @@ void add_render_options(CLI::App& app, prt::runtime::RenderOptions& options) {
 void add_reference_options(CLI::App& app, prt::runtime::ReferenceOptions& options,
                            bool& reference) {
   app.option_defaults()->group("Reference");
-  app.add_flag("--reference", reference, "Path trace instead: ground truth, no transfer needed");
+  CLI::Option* const flag = app.add_flag("--reference", reference,
+                                         "Path trace instead: ground truth, no transfer needed");
   app.add_option("--samples", options.sample_count, "Paths in a pixel")
-      ->check(CLI::Range(1, 1 << 20));
+      ->check(CLI::Range(1, 1 << 20))
+      ->needs(flag);
   app.add_option("--bounces", options.bounce_count, "Interreflections; 0: direct light only")
-      ->check(CLI::Range(0, 64));
+      ->check(CLI::Range(0, 64))
+      ->needs(flag);
   app.add_option_function<std::string>(
          "--light-mode", [&](const std::string& mode) { options.full_map = mode == "full"; },
          "Light of the bands, or the full environment map [band-limited]")
-      ->check(CLI::IsMember({"band-limited", "full"}));
+      ->check(CLI::IsMember({"band-limited", "full"}))
+      ->needs(flag);
+  app.add_option("--noise-output", options.noise,
+                 "Write the standard error of each pixel too (.exr), for prt-inspect --noise")
+      ->needs(flag);
+  for (const char* name : {"--transfer", "--draw", "--show"}) flag->excludes(app.get_option(name));
 }
 
 }  // namespace
@@ -122,10 +132,17 @@ int main(int argc, char** argv) {
   add_picture_options(tool.app(), options.picture);
   add_render_options(tool.app(), options);
   add_reference_options(tool.app(), reference_options, reference);
+  tool.add_component("Embree", prt::ray::embree_version);
+  tool.add_component("OpenGL", [] {
+    const prt::gl::HeadlessContext context;
+    return prt::gl::description();
+  });
   return tool.run(argc, argv, [&](prt::Report& report) {
     const PictureOptions& picture = options.picture;
-    prt::cli::check_paths({picture.model, picture.light, options.transfer},
-                          {{picture.output, {".png", ".exr"}, {}}}, tool.common());
+    prt::cli::check_paths(
+        {picture.model, picture.light, options.transfer},
+        {{picture.output, {".png", ".exr"}, {}}, {reference_options.noise, {".exr"}, {}}},
+        tool.common());
     options.picture.no_clobber = tool.common().no_clobber;
     options.debug = tool.common().verbose;
     if (!reference) return prt::runtime::render(options, report);

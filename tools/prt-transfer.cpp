@@ -6,6 +6,8 @@
 #include "cli/tool.h"
 #include "core/log.h"
 #include "gltf/document.h"
+#include "linalg/product.h"
+#include "ray/engine.h"
 #include "signal/transfer_signal.h"
 #include "transfer/diffuse.h"
 
@@ -33,7 +35,8 @@ void add_options(CLI::App& app, Options& options) {
   bounces->check(CLI::Range(0, 1000))->capture_default_str()->group("Transfer");
   app.add_option("--bounce-rays", options.diffuse.bounce_ray_count,
                  "Rays per vertex for what is reflected; 0: a quarter of --rays")
-      ->check(CLI::Range(0, 1 << 17))
+      ->check(CLI::Range(0, 1 << 14))
+      ->needs(bounces)
       ->capture_default_str()
       ->group("Transfer");
   app.add_flag("--unshadowed", options.unshadowed, "No rays: the closed form of a convex body")
@@ -43,9 +46,11 @@ void add_options(CLI::App& app, Options& options) {
       {"auto", transfer::ChannelMode::automatic},
       {"1", transfer::ChannelMode::one},
       {"3", transfer::ChannelMode::three}};
-  app.add_option("--channels", options.diffuse.channels,
-                 "Colour channels; auto: 3 where an albedo is coloured")
-      ->transform(CLI::CheckedTransformer(modes))
+  app.add_option_function<std::string>(
+         "--channels",
+         [&options, modes](const std::string& name) { options.diffuse.channels = modes.at(name); },
+         "Colour channels; auto: 3 where an albedo is coloured")
+      ->check(CLI::IsMember({"auto", "1", "3"}))
       ->default_str("auto")
       ->group("Transfer");
 }
@@ -108,5 +113,7 @@ int main(int argc, char** argv) {
                  "prt-transfer bunny.glb -o bunny.transfer.exr --bands 5 --rays 2048 --bounces 2");
   Options options;
   add_options(tool.app(), options);
+  tool.add_component("Embree", ray::embree_version);
+  tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) { bake(options, tool.common(), report); });
 }

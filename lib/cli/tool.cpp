@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <new>
@@ -28,6 +29,14 @@ void apply(const CommonOptions& options) {
                                    : log::Level::info);
 }
 
+/// CLI11's ranges let NaN pass.
+void check_finite(const CLI::Option& option) {
+  for (const std::string& value : option.results()) {
+    if (std::isfinite(std::stod(value))) continue;
+    throw Error(ErrorKind::usage, option.get_name() + ": not a finite number", {.found = value});
+  }
+}
+
 /// Results that do not arrive (a full disk, a closed pipe) are a failure.
 void flush_results() {
   std::cout.flush();
@@ -45,8 +54,9 @@ Tool::Tool(std::string name, std::string description, std::string example)
   // The last of repeated options counts, so that makefiles and scripts can override their defaults.
   app_.option_defaults()->always_capture_default()->multi_option_policy(
       CLI::MultiOptionPolicy::TakeLast);
-  app_.set_version_flag("--version", [this] {
-    return fmt::format("{} {} ({})", name_, PRTKIT_VERSION, simd_level_name(simd_level()));
+  app_.set_version_flag("--version", [this] { return version(); });
+  app_.failure_message([this](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("{}: {}. {} --help says more.\n", name_, error.what(), name_);
   });
   const char* group = "Common";
   app_.add_option("--threads", common_.threads, "Threads; 0: all")
@@ -58,6 +68,19 @@ Tool::Tool(std::string name, std::string description, std::string example)
   app_.add_flag("--progress", common_.progress, "Show progress off a terminal too")->group(group);
   app_.add_flag("-v,--verbose", common_.verbose, "Say more")->group(group);
   app_.add_flag("-q,--quiet", common_.quiet, "Say nothing but errors")->group(group);
+}
+
+void Tool::add_component(const std::string& name, const std::function<std::string()>& describe) {
+  components_.emplace_back(name, describe);
+}
+
+std::string Tool::version() const {
+  std::string text =
+      fmt::format("{} {} ({})", name_, PRTKIT_VERSION, simd_level_name(simd_level()));
+  if (app_.count("--verbose") == 0) return text;
+  for (const auto& [name, describe] : components_)
+    text += fmt::format("\n{}: {}", name, describe());
+  return text;
 }
 
 void Tool::record_options(Report& report) const {
@@ -78,6 +101,7 @@ void Tool::check_values() const {
                   {.found = fmt::format("{}", fmt::join(values, ",")),
                    .expected = fmt::format("{} values", count)});
     }
+    if (option->get_type_name().starts_with("FLOAT")) check_finite(*option);
     if (!option->get_type_name().starts_with("UINT")) continue;
     for (const std::string& value : values) {  // CLI11 2.1 takes -1 for the largest number
       if (value.starts_with('-')) {

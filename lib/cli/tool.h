@@ -1,5 +1,5 @@
-// What every tool's command line shares (docs/architecture.md §5): common options, help, version,
-// exit statuses, the run report.
+// What every tool's command line shares (docs/architecture.md, "Command line"): common options,
+// help, version, exit statuses, the run report.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -32,6 +32,9 @@ class Tool {
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
 
+  /// Something whose version or kind `--version -v` tells: "BLAS", asked only then.
+  void add_component(const std::string& name, const std::function<std::string()>& describe);
+
   /// Parses, runs `work`, writes the report, and returns the exit status: 0 done, 1 failed,
   /// 2 wrong usage, 3 bad input file. The work throws prt::Error.
   int run(int argc, char** argv, const std::function<void(Report&)>& work);
@@ -39,11 +42,13 @@ class Tool {
  private:
   void check_values() const;
   int execute(const std::function<void(Report&)>& work);
+  std::string version() const;
   void record_options(Report& report) const;
 
   std::string name_;
   CLI::App app_;
   CommonOptions common_;
+  std::vector<std::pair<std::string, std::function<std::string()>>> components_;
 };
 
 }  // namespace prt::cli

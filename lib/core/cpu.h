@@ -12,4 +12,8 @@ enum class SimdLevel { baseline, avx2, avx512 };
 SimdLevel simd_level();
 const char* simd_level_name(SimdLevel level);
 
+/// The target attributes of the wrappers.
+#define PRTKIT_AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")))
+#define PRTKIT_AVX2 __attribute__((target("avx2,fma")))
+
 }  // namespace prt

@@ -1,5 +1,5 @@
 // The one exception type of prtkit. Readers and drivers throw it; each main catches it once and
-// turns its kind into the exit status of docs/architecture.md §5.
+// turns its kind into the exit status of docs/architecture.md, "Command line".
 #pragma once
 
 #include <stdexcept>

@@ -20,7 +20,7 @@ void add_file(nlohmann::ordered_json& list, const std::filesystem::path& path) {
 
 }  // namespace
 
-Report::Report(std::string tool) : start_(std::chrono::steady_clock::now()) {
+Report::Report(std::string tool) {
   json_["tool"] = std::move(tool);
   json_["version"] = PRTKIT_VERSION;
   json_["options"] = nlohmann::ordered_json::object();
@@ -41,8 +41,7 @@ void Report::add_stage(const std::string& name, double seconds) {
 }
 
 void Report::write(const std::filesystem::path& path, bool no_clobber) {
-  json_["seconds"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  json_["seconds"] = stopwatch_.seconds();
   json_["peak_memory_bytes"] = peak_memory_bytes();
   json_["threads"] = thread_count();
   json_["simd"] = simd_level_name(simd_level());

@@ -3,10 +3,11 @@
 // peak_memory_bytes, threads, simd.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "core/stopwatch.h"
 
 namespace prt {
 
@@ -30,26 +31,21 @@ class Report {
 
  private:
   nlohmann::ordered_json json_;
-  std::chrono::steady_clock::time_point start_;
+  Stopwatch stopwatch_;
 };
 
 /// Times a scope as one stage of a report.
 class StageTimer {
  public:
-  StageTimer(Report& report, std::string name)
-      : report_(report), name_(std::move(name)), start_(std::chrono::steady_clock::now()) {}
-  ~StageTimer() { report_.add_stage(name_, seconds()); }
+  StageTimer(Report& report, std::string name) : report_(report), name_(std::move(name)) {}
+  ~StageTimer() { report_.add_stage(name_, stopwatch_.seconds()); }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
-
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
 
  private:
   Report& report_;
   std::string name_;
-  std::chrono::steady_clock::time_point start_;
+  Stopwatch stopwatch_;
 };
 
 /// Peak resident memory of this process so far, in bytes.

@@ -6,6 +6,7 @@
 #include "gltf/check.h"
 #include "gltf/container.h"
 #include "gltf/state.h"
+#include "mesh/mesh_file.h"
 
 namespace prt::gltf {
 
@@ -15,7 +16,12 @@ Document& Document::operator=(Document&&) noexcept = default;
 Document::~Document() = default;
 
 Document Document::load(const std::filesystem::path& path, const Limits& limits) {
-  return parse(read_file(path, limits.max_file_bytes), path, limits);
+  const auto bytes = read_file(path, limits.max_file_bytes);
+  if (mesh::is_mesh_file(path)) {
+    throw_bad_input("not a glTF file",
+                    {.file = path.string(), .advice = "Pass the file through prt-import first."});
+  }
+  return parse(bytes, path, limits);
 }
 
 Document Document::parse(std::span<const std::byte> bytes, const std::filesystem::path& path,

@@ -122,8 +122,10 @@ class PrimitiveRepair {
   ImportedMesh run() {
     const tinygltf::Primitive& before = primitive_of(model_, use_);
     mesh::TriangleMesh mesh = read_geometry(model_, before, where_);
-    // Vertices are merged only where there are no indices that say which ones are the same.
-    options_.repair.weld = before.indices < 0 && !has_other_data(before);
+    // Vertices are merged only where no indices, or indices made for other normals, say which ones
+    // are the same.
+    options_.repair.weld =
+        (before.indices < 0 || options_.repair.recompute_normals) && !has_other_data(before);
     const bool had_tangents = !mesh.tangents.empty();
     const std::size_t triangle_count = mesh.triangle_count(), vertices = mesh.vertex_count();
     const std::vector<Vec3> normals = mesh.normals;
@@ -141,8 +143,11 @@ class PrimitiveRepair {
     imported.vertex_count = mesh.vertex_count();
     imported.triangle_count = mesh.triangle_count();
     if (same && !source.empty() && is_ready(before)) return imported;
-    if (!had_tangents) mesh.tangents.clear();
     Json& primitive = primitive_of(state_, use_);
+    if (had_tangents && mesh.tangents.empty()) {
+      primitive["attributes"].erase("TANGENT");
+      if (!mesh.texcoords.empty()) mesh::compute_tangents(mesh);
+    }
     primitive["mode"] = TINYGLTF_MODE_TRIANGLES;
     carry_other_attributes(state_, model_, primitive["attributes"], source, where_);
     carry_targets(state_, model_, primitive, source, where_);

@@ -13,6 +13,7 @@ namespace prt::image {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+constexpr double kNegligible = 1e-3;  // share of a map that compression may leave negative
 
 Vec3 direction_of(float longitude, float sin_latitude, float cos_latitude) {
   return {std::sin(longitude) * cos_latitude, sin_latitude, std::cos(longitude) * cos_latitude};
@@ -41,17 +42,20 @@ Image read_environment(const std::filesystem::path& path, std::size_t max_pixels
   }
   Image environment(read.width, read.height, 3);
   std::size_t negative_count = 0;
+  double negative_sum = 0.0, sum = 0.0;
   const std::size_t texel_count = environment.pixels.size() / 3;
   const auto channel_count = static_cast<std::size_t>(read.channel_count);
   for (std::size_t i = 0; i < texel_count; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const float value = read.pixels[i * channel_count + (channel_count < 3 ? 0 : c)];
       negative_count += value < 0;
+      (value < 0 ? negative_sum : sum) += std::abs(value);
       environment.pixels[3 * i + c] = std::max(value, 0.0f);
     }
   }
   if (negative_count > 0) {
-    log::warning("{}: {} negative values set to 0", path.string(), negative_count);
+    log::write(negative_sum > kNegligible * sum ? log::Level::warning : log::Level::debug,
+               fmt::format("{}: {} negative values set to 0", path.string(), negative_count));
   }
   return environment;
 }

@@ -18,7 +18,8 @@ Vec3 direction_from_latlong(float u, float v);
 /// Inverse of the above.
 Vec2 latlong_from_direction(const Vec3& direction);
 
-/// Three channels, finite, negative values (seen in compressed maps) clamped to 0 with a warning.
+/// Three channels, finite, negative values (compression leaves some) clamped to 0, with a
+/// warning when they are more than a thousandth of the map's sum.
 /// Width must be twice the height within one texel. Throws Error (bad_input).
 Image read_environment(const std::filesystem::path& path, std::size_t max_pixels = kMaxPixels);
 

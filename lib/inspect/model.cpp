@@ -101,9 +101,10 @@ void check_encoding(const gltf::PrecomputedTransfer& transfer, const mesh::Scene
   }
   const std::string hash = mesh::mesh_hash(scene);
   if (!transfer.mesh_hash.empty() && transfer.mesh_hash != hash) {
-    inspection.error(kExtension,
-                     fmt::format("was baked for another mesh: hash {}, the file's is {}",
-                                 transfer.mesh_hash, hash));
+    inspection.error(
+        kExtension,
+        fmt::format("was baked for another mesh or other colours: hash {}, the file's is {}",
+                    transfer.mesh_hash, hash));
   }
   for (const auto& [name, values] : {std::pair{"means", &encoding.means},
                                      {"bases", &encoding.bases},

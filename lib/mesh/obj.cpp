@@ -54,9 +54,11 @@ class ObjReader {
         joined_.clear();
       }
     }
+    is_used_.resize(positions_.size());
     for (const Group& group : groups_) {
       if (!group.corners.empty()) add_primitive(group);
     }
+    if (!scene_.primitives.empty()) append_unused_vertices(scene_.primitives[0].mesh);
     return std::move(scene_);
   }
 
@@ -193,6 +195,7 @@ class ObjReader {
       mesh.indices.push_back(vertex->second);
       if (!added) continue;
       mesh.positions.push_back(positions_[corner[0]]);
+      is_used_[corner[0]] = true;
       if (has_texcoords) mesh.texcoords.push_back(texcoords_[corner[1]]);
       if (has_normals) mesh.normals.push_back(normals_[corner[2]]);
     }
@@ -202,12 +205,22 @@ class ObjReader {
                                  .mesh_index = static_cast<int>(scene_.primitives.size())});
   }
 
+  // What no face uses is there all the same, for repair to drop and count.
+  void append_unused_vertices(TriangleMesh& mesh) const {
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      if (!is_used_[i]) mesh.positions.push_back(positions_[i]);
+    }
+    if (!mesh.texcoords.empty()) mesh.texcoords.resize(mesh.vertex_count(), Vec2(0.0f));
+    if (!mesh.normals.empty()) mesh.normals.resize(mesh.vertex_count(), Vec3(0.0f));
+  }
+
   const std::filesystem::path& path_;
   const ReadLimits& limits_;
   std::size_t line_number_ = 0;
   std::string joined_;
   std::vector<Vec3> positions_, normals_;
   std::vector<Vec2> texcoords_;
+  std::vector<bool> is_used_;  // of positions_, by a face
   std::vector<Group> groups_;
   std::map<std::string, std::size_t> group_of_name_;
   std::size_t current_group_ = 0;

@@ -88,12 +88,25 @@ bool is_good_normal(const Vec3& normal) {
   return std::isfinite(length) && length > 1e-6f;
 }
 
+// Computes all normals; returns where the vertices (some perhaps split) came from.
+std::vector<std::uint32_t> replace_normals(TriangleMesh& mesh, const RepairOptions& options) {
+  if (options.crease_angle_degrees) return compute_normals(mesh, *options.crease_angle_degrees);
+  TriangleMesh creased = mesh;
+  auto source = compute_normals(creased, kCreaseAngle);
+  const std::size_t split_count = creased.vertex_count() - mesh.vertex_count();
+  if (split_count * kVerticesPerCrease < mesh.vertex_count()) return compute_normals(mesh, 180.0f);
+  mesh = std::move(creased);
+  return source;
+}
+
 // Fills in missing normals; returns where the vertices (some perhaps split) came from.
 std::vector<std::uint32_t> complete_normals(TriangleMesh& mesh, const RepairOptions& options,
                                             RepairReport& report) {
-  if (mesh.normals.empty() || options.recompute_normals) {
-    const auto source = compute_normals(mesh, options.crease_angle_degrees);
+  if (mesh.normals.empty()) {
+    const std::size_t before = mesh.vertex_count();
+    auto source = replace_normals(mesh, options);
     report.computed_normal_count += mesh.vertex_count();
+    report.split_vertex_count += mesh.vertex_count() - before;
     return source;
   }
   std::vector<std::uint32_t> same(mesh.vertex_count());
@@ -134,6 +147,7 @@ void RepairReport::add(const RepairReport& other) {
   duplicate_triangle_count += other.duplicate_triangle_count;
   nonfinite_triangle_count += other.nonfinite_triangle_count;
   computed_normal_count += other.computed_normal_count;
+  split_vertex_count += other.split_vertex_count;
   nonmanifold_triangle_count += other.nonmanifold_triangle_count;
   nonmanifold_vertex_count += other.nonmanifold_vertex_count;
   boundary_edge_count += other.boundary_edge_count;
@@ -155,6 +169,10 @@ void gather_vertices(TriangleMesh& mesh, const std::vector<std::uint32_t>& sourc
 
 std::vector<std::uint32_t> repair(TriangleMesh& mesh, const RepairOptions& options,
                                   RepairReport& report) {
+  if (options.recompute_normals) {
+    mesh.normals.clear();
+    mesh.tangents.clear();
+  }
   std::size_t nonfinite = 0, welded = 0;
   for (const Vec3& position : mesh.positions) nonfinite += !is_finite(position);
   const std::size_t before = mesh.vertex_count();

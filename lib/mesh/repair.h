@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,14 @@ namespace prt::mesh {
 struct RepairOptions {
   bool weld = true;  ///< merge vertices whose attributes are all equal, bit for bit
   /// Where normals have to be computed: an edge whose faces' normals differ by more stays hard.
-  /// 180: everything smooth.
-  float crease_angle_degrees = 180.0f;
-  bool recompute_normals = false;  ///< even where the file has good ones
+  /// 180: everything smooth. Unset: kCreaseAngle, and everything smooth where that would split
+  /// fewer than one vertex in kVerticesPerCrease, since so few are noise of a scan.
+  std::optional<float> crease_angle_degrees;
+  bool recompute_normals = false;  ///< the file's normals and tangents are dropped first
 };
+
+constexpr float kCreaseAngle = 60.0f;
+constexpr std::size_t kVerticesPerCrease = 50;
 
 /// What was found and done; counts add up over the meshes of a file.
 struct RepairReport {
@@ -28,6 +33,7 @@ struct RepairReport {
   std::size_t duplicate_triangle_count = 0;    ///< dropped: the same three vertices, same side
   std::size_t nonfinite_triangle_count = 0;    ///< dropped with a vertex
   std::size_t computed_normal_count = 0;       ///< vertices whose normal was computed
+  std::size_t split_vertex_count = 0;          ///< added, so that edges stay hard
   std::size_t nonmanifold_triangle_count = 0;  ///< kept: more than two faces at an edge
   std::size_t nonmanifold_vertex_count = 0;    ///< kept: bow ties
   std::size_t boundary_edge_count = 0;         ///< edges of one face

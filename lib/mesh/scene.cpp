@@ -114,6 +114,11 @@ std::string mesh_hash(const Scene& scene) {
     hasher.add(std::span<const std::uint64_t>(counts));
     hasher.add(std::span<const Vec3>(mesh.positions));
     hasher.add(std::span<const Vec3>(mesh.normals));
+    std::vector<Vec3> albedo(mesh.vertex_count());
+    for (std::size_t i = 0; i < albedo.size(); ++i) {
+      albedo[i] = albedo_at_vertex(scene, primitive, i);
+    }
+    hasher.add(std::span<const Vec3>(albedo));
     hasher.add(std::span<const std::uint32_t>(mesh.indices));
   }
   return hasher.hex();

@@ -50,7 +50,9 @@ Vec3 albedo_at_vertex(const Scene& scene, const Primitive& primitive, std::size_
 Vec3 albedo_at_point(const Scene& scene, const Primitive& primitive, std::size_t triangle, float u,
                      float v);
 
-/// Content hash of positions, normals and indices of all primitives: what a transfer belongs to.
+/// Content hash of what a transfer is baked from and belongs to: positions, normals, albedo of the
+/// vertices and indices of all primitives. Of a texture, what lies between the vertices is left
+/// out.
 std::string mesh_hash(const Scene& scene);
 
 }  // namespace prt::mesh

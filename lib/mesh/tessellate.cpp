@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
@@ -122,17 +124,40 @@ class Refiner {
   std::unordered_map<std::uint64_t, std::uint32_t> midpoints_;
 };
 
+// Pieces of edges up to max_edge cover an area of at most √3/4 max_edge² each, and an edge of
+// length L ends up as at least L / max_edge edges of different pieces.
+double least_triangle_count(const TriangleMesh& mesh, double max_edge,
+                            const Matrix4& world_from_local) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    std::array<Imath::V3d, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = Imath::V3d(transform_point(world_from_local, mesh.positions[mesh.triangle(i)[k]]));
+    }
+    const double longest =
+        std::max({(p[1] - p[0]).length(), (p[2] - p[1]).length(), (p[0] - p[2]).length()});
+    const double area = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).length();
+    sum += std::max({1.0, area / (std::sqrt(3.0) / 4.0 * max_edge * max_edge), longest / max_edge});
+  }
+  return sum;
+}
+
+void check_count(double count, std::size_t max_triangles) {
+  if (count <= static_cast<double>(max_triangles)) return;
+  throw_failed("refining makes too many triangles",
+               {.found = fmt::format("at least {:.3g}", count),
+                .expected = fmt::format("at most {}", max_triangles),
+                .advice = "Use a longer --max-edge, or allow more with --max-triangles."});
+}
+
 }  // namespace
 
 void tessellate(TriangleMesh& mesh, float max_edge, std::size_t max_triangles,
                 const Matrix4& world_from_local) {
+  check_count(least_triangle_count(mesh, max_edge, world_from_local), max_triangles);
   Refiner refiner(mesh, max_edge, world_from_local);
   while (refiner.refine()) {
-    if (mesh.triangle_count() > max_triangles) {
-      throw_failed("refining makes too many triangles",
-                   {.found = fmt::format("more than {}", max_triangles),
-                    .advice = "Use a longer --max-edge."});
-    }
+    check_count(static_cast<double>(mesh.triangle_count()), max_triangles);
   }
 }
 

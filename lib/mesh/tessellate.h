@@ -13,7 +13,7 @@ namespace prt::mesh {
 /// is split depends on its end points alone, so triangles that share it, even by different vertices
 /// at equal positions, agree: no T-junctions. Attributes are interpolated, normals and tangents
 /// made unit again. Lengths are measured after `world_from_local`. Throws Error (failed) when there
-/// would be more than `max_triangles`.
+/// would be more than `max_triangles`, before the work where their area or edges tell.
 /// Precondition: finite positions, indices in range, max_edge > 0.
 void tessellate(TriangleMesh& mesh, float max_edge, std::size_t max_triangles,
                 const Matrix4& world_from_local = {});

@@ -203,6 +203,8 @@ class EmbreeEngine final : public Engine {
 
 }  // namespace
 
+std::string embree_version() { return RTC_VERSION_STRING; }
+
 std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles) {
   check_triangles(triangles);
   return std::make_unique<EmbreeEngine>(triangles);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/vec.h"
@@ -60,6 +61,9 @@ class Engine {
                              std::span<const std::uint32_t> chosen,
                              std::span<std::uint8_t> occluded) const = 0;
 };
+
+/// Version of Embree, "3.13.5".
+std::string embree_version();
 
 /// Embree 3, robust mode: tight along edges; of rays aimed at a vertex to the last bit a few in a
 /// thousand pass. Copies what it needs of the triangles.

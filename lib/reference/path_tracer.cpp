@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <chrono>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "ray/engine.h"
 #include "reference/surface.h"
 #include "reference/tile.h"
@@ -20,10 +20,6 @@ void check_range(const char* name, int value, int low, int high) {
   if (value >= low && value <= high) return;
   throw Error(ErrorKind::usage, fmt::format("{} out of range", name),
               {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -41,12 +37,12 @@ Result trace(const mesh::Scene& scene, const camera::Camera& camera,
   result.standard_error = image::Image(options.width, options.height, 3);
   result.sample_count =
       (options.sample_count + kReplicateCount - 1) / kReplicateCount * kReplicateCount;
-  const auto build_start = std::chrono::steady_clock::now();
+  const Stopwatch build;
   const SurfaceLookup surfaces(scene);
   const auto engine = ray::make_embree_engine(surfaces.triangles());
-  result.build_seconds = seconds_since(build_start);
+  result.build_seconds = build.seconds();
 
-  const auto trace_start = std::chrono::steady_clock::now();
+  const Stopwatch tracing;
   camera::Camera centred = camera;
   centred.eye -= surfaces.centre();
   centred.target -= surfaces.centre();
@@ -64,7 +60,7 @@ Result trace(const mesh::Scene& scene, const camera::Camera& camera,
     progress.advance(1);
   });
   result.rays_cast = rays_cast;
-  result.trace_seconds = seconds_since(trace_start);
+  result.trace_seconds = tracing.seconds();
   return result;
 }
 

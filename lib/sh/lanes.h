@@ -26,8 +26,4 @@ template <class Lanes>
   std::memcpy(to, &lanes, sizeof lanes);
 }
 
-/// The target attributes of the wrappers.
-#define PRTKIT_AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")))
-#define PRTKIT_AVX2 __attribute__((target("avx2,fma")))
-
 }  // namespace prt::sh

@@ -8,7 +8,8 @@ namespace prt::signal {
 void check_belongs_to(const TransferSignal& signal, const mesh::Scene& scene,
                       const std::filesystem::path& signal_path) {
   const char* advice =
-      "Run prt-transfer again on this model, or name the model that it was run on.";
+      "Geometry or colours differ from those it was baked for: run prt-transfer again on this "
+      "model, or name the model that it was run on.";
   const auto reject = [&](std::string element, std::string found, std::string expected) {
     throw_bad_input("the transfer belongs to another mesh", {.file = signal_path.string(),
                                                              .element = std::move(element),

@@ -91,10 +91,14 @@ void render_reference(const ReferenceOptions& options, Report& report) {
   write_picture(picture.output, result.radiance,
                 {.exposure = picture.exposure, .transparent = background == Background::none},
                 picture.no_clobber);
+  if (!options.noise.empty()) {
+    image::write_image(options.noise, result.standard_error, picture.no_clobber);
+  }
   stage.reset();
   report.add_input(picture.model);
   if (!picture.light.empty()) report.add_input(picture.light);
   report.add_output(picture.output);
+  if (!options.noise.empty()) report.add_output(options.noise);
 }
 
 }  // namespace prt::runtime

@@ -10,10 +10,11 @@ namespace prt::runtime {
 
 struct ReferenceOptions {
   PictureOptions picture;
-  int sample_count = 256;  ///< paths in a pixel
-  int bounce_count = 2;    ///< interreflections; 0: direct light only
-  bool full_map = false;   ///< the whole environment map, else its bands
-  bool box_filter = true;  ///< the mean over the pixel's square, else its centre
+  std::filesystem::path noise{};  ///< .exr of the standard error, RGB; empty: not wanted
+  int sample_count = 256;         ///< paths in a pixel
+  int bounce_count = 2;           ///< interreflections; 0: direct light only
+  bool full_map = false;          ///< the whole environment map, else its bands
+  bool box_filter = true;         ///< the mean over the pixel's square, else its centre
   std::uint64_t seed = 1;
 };
 

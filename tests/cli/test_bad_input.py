@@ -6,8 +6,8 @@ import json
 import struct
 import unittest
 
-from toolbox import (BAD_INPUT, FAILED, QUAD_OBJ, WRONG_USAGE, ToolTest, glb, limit_file_size, run,
-                     triangle_gltf)
+from toolbox import (BAD_INPUT, FAILED, QUAD_OBJ, WRONG_USAGE, ToolTest, glb, limit_file_size,
+                     read_glb, run, triangle_gltf)
 
 
 class BadMesh(ToolTest):
@@ -161,6 +161,18 @@ class BadBake(ToolTest):
         self.done("prt-import", source, "-o", other)
         self.refused(BAD_INPUT, "(?i)mesh", "prt-compress", other, self.transfer, "-o",
                      self.baked, "--clusters", 1)
+
+    def test_transfer_of_the_same_mesh_in_another_colour(self):
+        self.done(*self.compress("--clusters", 1, "--components", 1))
+        red = self.folder / "red.glb"
+        self.done("prt-import", self.folder / "quad.obj", "-o", red, "--base-color", "1,0,0")
+        self.refused(BAD_INPUT, "colours", "prt-compress", red, self.transfer, "-o",
+                     self.folder / "red.prt.glb", "--clusters", 1)
+        document, binary = read_glb(self.baked)
+        document["materials"] = [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}]
+        document["meshes"][0]["primitives"][0]["material"] = 0
+        painted = self.write("painted.prt.glb", glb(document, binary))
+        self.refused(BAD_INPUT, "colours", "prt-render", painted, "-o", self.folder / "a.png")
 
     def test_cluster_counts(self):
         self.refused(WRONG_USAGE, "clusters", *self.compress("--clusters", 0))

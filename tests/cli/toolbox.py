@@ -81,6 +81,13 @@ def glb(document, binary=b""):
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
+def read_glb(path):
+    """The inverse: JSON object and binary chunk."""
+    content = path.read_bytes()
+    length = struct.unpack_from("<I", content, 12)[0]
+    return json.loads(content[20:20 + length]), content[28 + length:]
+
+
 def triangle_gltf():
     """A correct one-triangle glTF as (JSON object, binary chunk), to be broken by tests."""
     positions = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 0, -1)

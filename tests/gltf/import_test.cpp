@@ -36,6 +36,24 @@ TEST_F(GltfImport, LeavesAGoodFileAlone) {
   EXPECT_EQ(result.document.glb_bytes(), before.glb_bytes());
 }
 
+TEST_F(GltfImport, RecomputingNormalsWeldsAndRenewsTangents) {
+  mesh::Scene scene;
+  mesh::TriangleMesh& mesh = scene.primitives.emplace_back().mesh;  // flat, with facets' normals
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  for (const Vec3& p : mesh.positions) mesh.texcoords.emplace_back(p.x, 1 - p.y);
+  mesh.normals = {{0, 0.6f, 0.8f}, {0, 0.6f, 0.8f}, {0, 0.6f, 0.8f},
+                  {0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}};
+  mesh.tangents.assign(6, Vec4(0, 1, 0, -1));
+  mesh.indices = {0, 1, 2, 3, 4, 5};
+  Document::from_scene(scene).save_glb(folder_ / "a.glb");
+  ImportOptions options;
+  options.prepare.repair.recompute_normals = true;
+  const mesh::Scene result = import_file(folder_ / "a.glb", options).document.scene();
+  const mesh::TriangleMesh& after = result.primitives[0].mesh;
+  EXPECT_EQ(after.normals, std::vector<Vec3>(4, Vec3(0, 0, 1)));
+  EXPECT_EQ(after.tangents, std::vector<Vec4>(4, Vec4(1, 0, 0, 1)));
+}
+
 TEST_F(GltfImport, RefusesTransformsThatBakingWouldRefuse) {
   const auto error_with = [&](const char* key, const ordered_json& value) -> std::string {
     ordered_json json = samples::triangle_json();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/error.h"
 #include "mesh/mesh_file.h"
 #include "mesh/normals.h"
 #include "mesh/prepare.h"
@@ -35,7 +36,7 @@ TriangleMesh cube() {
 TEST(Repair, SmoothCubeHasNormalsAlongItsDiagonals) {
   TriangleMesh mesh = cube();
   RepairReport report;
-  repair(mesh, {}, report);
+  repair(mesh, {.crease_angle_degrees = 180.0f}, report);
   EXPECT_EQ(mesh.vertex_count(), 8u);
   EXPECT_EQ(report.computed_normal_count, 8u);
   // Angle weights make it exact although faces have one or two triangles at a corner.
@@ -58,6 +59,44 @@ TEST(Repair, CreaseAngleKeepsTheEdgesOfACubeHard) {
   }
 }
 
+TEST(Repair, CubeWithoutNormalsIsFaceted) {
+  TriangleMesh mesh = cube();
+  RepairReport report;
+  repair(mesh, {}, report);
+  EXPECT_EQ(mesh.vertex_count(), 24u);
+  EXPECT_EQ(report.split_vertex_count, 16u);
+}
+
+// A ground of rolling hills; one vertex of its 900 is pulled out into a spike.
+TEST(Repair, AFewSharpEdgesOfAScanSplitNothing) {
+  TriangleMesh mesh;
+  constexpr std::uint32_t kSide = 30;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    const float x = static_cast<float>(i % kSide), z = static_cast<float>(i / kSide);
+    mesh.positions.emplace_back(x, std::sin(0.3f * x) + std::sin(0.2f * z), z);
+    if (i % kSide + 1 == kSide || i / kSide + 1 == kSide) continue;
+    mesh.indices.insert(mesh.indices.end(), {i, i + kSide, i + 1, i + 1, i + kSide, i + kSide + 1});
+  }
+  mesh.positions[kSide * kSide / 2 + kSide / 2].y += 10.0f;
+  TriangleMesh creased = mesh;
+  RepairReport report;
+  repair(creased, {.crease_angle_degrees = kCreaseAngle}, report);
+  EXPECT_GT(report.split_vertex_count, 0u);
+  repair(mesh, {}, report);
+  EXPECT_EQ(mesh.vertex_count(), kSide * kSide);
+}
+
+TEST(Repair, RecomputedNormalsWeldWhatTheOldOnesKeptApart) {
+  TriangleMesh mesh = cube();
+  RepairReport report;
+  repair(mesh, {}, report);
+  mesh.tangents.assign(24, Vec4(1, 0, 0, 1));
+  repair(mesh, {.crease_angle_degrees = 180.0f, .recompute_normals = true}, report);
+  EXPECT_EQ(mesh.vertex_count(), 8u);
+  EXPECT_EQ(report.welded_vertex_count, 16u);
+  EXPECT_TRUE(mesh.tangents.empty());
+}
+
 TEST(Repair, WeldsTriangleSoup) {
   const TriangleMesh whole = cube();
   TriangleMesh soup;
@@ -66,7 +105,7 @@ TEST(Repair, WeldsTriangleSoup) {
     soup.positions.push_back(whole.positions[index]);
   }
   RepairReport report;
-  repair(soup, {}, report);
+  repair(soup, {.crease_angle_degrees = 180.0f}, report);
   EXPECT_EQ(soup.vertex_count(), 8u);
   EXPECT_EQ(report.welded_vertex_count, 28u);
   EXPECT_EQ(report.unreferenced_vertex_count, 0u);
@@ -80,7 +119,7 @@ TEST(Repair, KeepsVerticesApartThatDifferInTexcoords) {
   mesh.texcoords[8] = Vec2(1.0f);
   mesh.indices[0] = 8;
   RepairReport report;
-  repair(mesh, {}, report);
+  repair(mesh, {.crease_angle_degrees = 180.0f}, report);
   EXPECT_EQ(mesh.vertex_count(), 9u);
   EXPECT_EQ(report.boundary_edge_count, 0u);  // a seam is no hole
 }
@@ -203,7 +242,18 @@ TEST(Tessellate, InterpolatesEveryAttribute) {
 
 TEST(Tessellate, StopsAtTheLimit) {
   TriangleMesh mesh = cube();
-  EXPECT_ANY_THROW(tessellate(mesh, 1e-6f, 1000));
+  EXPECT_THROW(tessellate(mesh, 0.1f, 1000), Error);
+}
+
+TEST(Tessellate, RefusesAHopelessLengthBeforeTheWork) {
+  TriangleMesh mesh = cube();
+  EXPECT_THROW(tessellate(mesh, 1e-5f, 50'000'000), Error);
+  EXPECT_EQ(mesh.triangle_count(), 12u);
+  TriangleMesh sliver;  // no area to tell, but a long edge
+  sliver.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1e-9f, 0}};
+  sliver.indices = {0, 1, 2};
+  EXPECT_THROW(tessellate(sliver, 1e-5f, 50'000), Error);
+  EXPECT_EQ(sliver.triangle_count(), 1u);
 }
 
 TEST(Data, ScenesHaveTheSizesTheirCommentsName) {

@@ -1,0 +1,63 @@
+"""Options: values out of range, and options that would do nothing, are wrong usage; what the common
+ones say."""
+
+import unittest
+
+from toolbox import BAD_INPUT, QUAD_OBJ, WRONG_USAGE, ToolTest
+
+
+class Options(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.source = self.write("quad.obj", QUAD_OBJ)
+        self.quad = self.folder / "quad.glb"
+        self.done("prt-import", self.source, "-o", self.quad)
+
+    def wrong(self, pattern, tool, *arguments):
+        """A usage error, which starts with the tool's name."""
+        result = self.refused(WRONG_USAGE, pattern, tool, *arguments)
+        self.assertTrue(result.stderr.startswith(f"{tool}: "), result.stderr)
+
+    def test_options_of_the_reference_need_it_and_those_of_real_time_exclude_it(self):
+        render = ("prt-render", self.quad, "-o", self.folder / "a.png")
+        for option in (("--samples", 4), ("--bounces", 1), ("--light-mode", "full"),
+                       ("--noise-output", self.folder / "n.exr")):
+            self.wrong(f"{option[0]} requires --reference", *render, *option)
+        for option in (("--transfer", self.quad), ("--draw", "single"), ("--show", "clusters")):
+            self.wrong(f"{option[0]}.*excludes|excludes.*{option[0]}", *render, *option,
+                       "--reference")
+
+    def test_options_of_transfer(self):
+        transfer = ("prt-transfer", self.quad, "-o", self.folder / "a.transfer.exr", "--rays", 16)
+        self.wrong("--channels", *transfer, "--channels", 2)
+        self.wrong("--bounce-rays", *transfer, "--bounces", 1, "--bounce-rays", 16385)
+        self.wrong("requires --bounces", *transfer, "--bounce-rays", 16)
+        self.done(*transfer, "--bounces", 1, "--bounce-rays", 16384, "--channels", 1)
+
+    def test_numbers_that_are_not_finite(self):
+        for value in ("nan", "inf", "-nan"):
+            self.wrong("--max-edge", "prt-import", self.source, "-o", self.folder / "a.glb",
+                       "--max-edge", value)
+        self.wrong("--base-color", "prt-import", self.source, "-o", self.folder / "a.glb",
+                   "--base-color", "nan,1,1")
+        self.wrong("finite", "prt-light", "--constant", "nan,1,1", "-o", self.folder / "a.json")
+
+    def test_missing_arguments(self):
+        self.wrong("input is required", "prt-import")
+        self.wrong("--help says more", "prt-light", "--no-such-option")
+
+    def test_a_raw_mesh_is_to_be_imported_first(self):
+        for tool, out in (("prt-transfer", "a.exr"), ("prt-render", "a.png")):
+            self.refused(BAD_INPUT, r"quad\.obj: not a glTF file.*prt-import", tool, self.source,
+                         "-o", self.folder / out)
+
+    def test_verbose_version_names_what_the_tool_stands_on(self):
+        for tool, pattern in (("prt-transfer", r"(?s)Embree: 3\.\d+.*BLAS: \w+"),
+                              ("prt-compress", r"BLAS: \w+"),
+                              ("prt-render", r"(?s)Embree: 3\.\d+.*OpenGL: \d")):
+            self.assertRegex(self.done(tool, "--version", "-v").stdout, pattern)
+            self.assertEqual(len(self.done(tool, "--version").stdout.splitlines()), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,70 @@
+#include "mesh/scene.h"
+
+#include <gtest/gtest.h>
+
+namespace prt::mesh {
+namespace {
+
+// One textured triangle, its corners at the texcoords given.
+Scene textured(const std::vector<Vec2>& texcoords, Wrap wrap) {
+  Scene scene;
+  image::Image image(2, 1, 3);  // black, white
+  for (int c = 0; c < 3; ++c) image.at(1, 0)[c] = 1.0f;
+  scene.images.push_back(std::move(image));
+  Material& material = scene.materials.emplace_back();
+  material.base_color_image = 0;
+  material.wrap_s = material.wrap_t = wrap;
+  Primitive& primitive = scene.primitives.emplace_back();
+  primitive.material = 0;
+  primitive.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  primitive.mesh.normals.assign(3, Vec3(0, 0, 1));
+  primitive.mesh.texcoords = texcoords;
+  primitive.mesh.indices = {0, 1, 2};
+  return scene;
+}
+
+float albedo_where(float s, Wrap wrap) {
+  const Scene scene = textured(std::vector<Vec2>(3, Vec2(s, 0.5f)), wrap);
+  return albedo_at_vertex(scene, scene.primitives[0], 0).x;
+}
+
+TEST(Albedo, TexturesWrapAsTheirMaterialSays) {
+  // Texel centres are at 1/4 and 3/4.
+  for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
+    EXPECT_FLOAT_EQ(albedo_where(0.25f, wrap), 0.0f);
+    EXPECT_FLOAT_EQ(albedo_where(0.5f, wrap), 0.5f);
+    EXPECT_FLOAT_EQ(albedo_where(0.75f, wrap), 1.0f);
+  }
+  EXPECT_FLOAT_EQ(albedo_where(1.0f, Wrap::repeat), 0.5f);  // between white and the next black
+  EXPECT_FLOAT_EQ(albedo_where(1.0f, Wrap::clamp), 1.0f);
+  EXPECT_FLOAT_EQ(albedo_where(1.0f, Wrap::mirror), 1.0f);
+  EXPECT_FLOAT_EQ(albedo_where(1.25f, Wrap::repeat), 0.0f);
+  EXPECT_FLOAT_EQ(albedo_where(1.25f, Wrap::clamp), 1.0f);
+  EXPECT_FLOAT_EQ(albedo_where(1.25f, Wrap::mirror), 1.0f);
+  EXPECT_FLOAT_EQ(albedo_where(-1.25f, Wrap::repeat), 1.0f);
+  EXPECT_FLOAT_EQ(albedo_where(-1.25f, Wrap::clamp), 0.0f);
+  EXPECT_FLOAT_EQ(albedo_where(-1.25f, Wrap::mirror), 1.0f);
+}
+
+TEST(MeshHash, ChangesWithGeometryAndColoursAndNothingElse) {
+  const Scene scene = textured({{0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.5f}}, Wrap::repeat);
+  const std::string hash = mesh_hash(scene);
+  Scene other = scene;
+  other.materials[0].name = "another name";
+  other.primitives[0].name = "another name";
+  EXPECT_EQ(mesh_hash(other), hash);
+  other.materials[0].base_color.x = 0.5f;
+  EXPECT_NE(mesh_hash(other), hash);
+  other = scene;
+  other.images[0].pixels[0] = 0.1f;
+  EXPECT_NE(mesh_hash(other), hash);
+  other = scene;
+  other.primitives[0].mesh.colors.assign(3, Vec4(0.9f));
+  EXPECT_NE(mesh_hash(other), hash);
+  other = scene;
+  other.primitives[0].mesh.positions[0].x = 0.1f;
+  EXPECT_NE(mesh_hash(other), hash);
+}
+
+}  // namespace
+}  // namespace prt::mesh
