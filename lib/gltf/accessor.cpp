@@ -16,10 +16,6 @@ constexpr std::pair<const char*, int> kTypes[] = {
     {"VEC4", TINYGLTF_TYPE_VEC4},     {"MAT2", TINYGLTF_TYPE_MAT2}, {"MAT3", TINYGLTF_TYPE_MAT3},
     {"MAT4", TINYGLTF_TYPE_MAT4}};
 
-std::size_t component_count(int type) {
-  return static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<unsigned>(type)));
-}
-
 template <class T>
 T load(const std::byte* from) {
   T value;
@@ -114,6 +110,10 @@ int type_code(const std::string& type) {
   return -1;
 }
 
+std::size_t component_count(int type) {
+  return static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<unsigned>(type)));
+}
+
 std::size_t element_bytes(int component_type, int type) {
   const std::size_t component = component_bytes(static_cast<std::size_t>(component_type));
   // Columns of matrices start at multiples of 4 bytes.
@@ -189,6 +189,7 @@ std::size_t add_accessor(State& state, const NewAccessor& accessor, Bytes bytes)
                        {"componentType", accessor.component_type},
                        {"count", accessor.count},
                        {"type", accessor.type}});
+  if (accessor.normalized) accessors.back()["normalized"] = true;
   return accessors.size() - 1;
 }
 

@@ -16,6 +16,7 @@ std::size_t element_bytes(int component_type, int type);  ///< of known ones
 
 const tinygltf::Accessor& accessor_of(const Model& model, int accessor);
 std::size_t component_count(const tinygltf::Accessor& accessor);  ///< of an element
+std::size_t component_count(int type);                            ///< of an element of that type
 
 /// All elements, tightly packed, sparse changes applied, as they are stored.
 Bytes read_elements(const Model& model, int accessor);
@@ -33,6 +34,7 @@ struct NewAccessor {
   std::size_t count;
   std::size_t stride = 0;  ///< of the buffer view; 0: tight
   int target = 0;          ///< of the buffer view; 0: none
+  bool normalized = false;
 };
 
 /// Appends a buffer, a buffer view and an accessor. Returns the accessor's number.

@@ -1,9 +1,13 @@
 // The content of the glTF extension PRTKIT_precomputed_transfer (docs/extensions).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "cpca/encoding.h"
+#include "cpca/weight_format.h"
 
 namespace prt::gltf {
 
@@ -16,6 +20,17 @@ struct PrecomputedTransfer {
   std::string brdf = "lambert";
   std::string mesh_hash;
   cpca::Encoding encoding;
+  /// Weights of a normalised format are multiples of 1 / cpca::greatest(format) in [0, 1].
+  cpca::WeightFormat weight_format = cpca::WeightFormat::float32;
+  /// The first cluster of each supercluster, from 0 upwards; empty: every cluster is one.
+  std::vector<std::uint32_t> first_clusters = {};
 };
+
+/// Bytes that a file stores for it, alignment and padding included.
+struct StoredBytes {
+  std::size_t cluster_indices, weights, means, bases, tables;  ///< tables: counts, superclusters
+  std::size_t total() const { return cluster_indices + weights + means + bases + tables; }
+};
+StoredBytes stored_bytes(const PrecomputedTransfer& transfer);
 
 }  // namespace prt::gltf

@@ -120,7 +120,7 @@ void remove_precomputed_transfer(State& state) {
   Numbers dead;
   if (const Json* extension = find_transfer(root)) {
     for (const Json& transfer : array_of(*extension, "transfers")) {
-      for (const char* key : {"means", "bases"}) {
+      for (const char* key : {"means", "bases", "componentCounts", "superclusters"}) {
         if (const Json* accessor = find(transfer, key)) collect_numbers(*accessor, dead);
       }
     }
@@ -128,6 +128,9 @@ void remove_precomputed_transfer(State& state) {
   erase_extension(root);
   for (std::size_t m = 0; m < state.count("meshes"); ++m) {
     for (Json& primitive : root["meshes"][m]["primitives"]) {
+      if (const Json* reference = find_transfer(primitive)) {
+        if (const Json* weights = find(*reference, "weights")) collect_numbers(*weights, dead);
+      }
       erase_extension(primitive);
       erase_attributes(primitive, dead);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "gltf/document.h"
 #include "inspect/inspection.h"
@@ -44,16 +45,24 @@ Json describe(const mesh::Scene& scene, const mesh::Primitive& primitive) {
   return json;
 }
 
-// Vectors of a cluster are orthonormal; a cluster of fewer points than components pads with zeros.
-double orthonormality_error(const cpca::Encoding& encoding, int cluster) {
+// Vectors of a cluster are orthonormal, with normalised weights orthogonal; a cluster of fewer
+// points than components pads with zeros.
+double orthonormality_error(const gltf::PrecomputedTransfer& transfer, int cluster) {
+  const cpca::Encoding& encoding = transfer.encoding;
+  const bool unit_length = transfer.weight_format == cpca::WeightFormat::float32;
+  const auto dot = [&](int i, int j) {
+    const auto a = encoding.basis(cluster, i), b = encoding.basis(cluster, j);
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
   double worst = 0.0;
-  for (int i = 0; i < encoding.component_count; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      const auto a = encoding.basis(cluster, i), b = encoding.basis(cluster, j);
-      double dot = 0.0;
-      for (std::size_t k = 0; k < a.size(); ++k) dot += double{a[k]} * b[k];
-      if (i == j && dot == 0.0) continue;
-      worst = std::max(worst, std::abs(dot - (i == j ? 1.0 : 0.0)));
+  for (int i = 0; i < encoding.component_count_of(cluster); ++i) {
+    const double square = dot(i, i);
+    if (square == 0.0) continue;
+    if (unit_length) worst = std::max(worst, std::abs(square - 1.0));
+    for (int j = 0; j < i; ++j) {
+      const double product = dot(i, j);
+      if (product != 0.0)
+        worst = std::max(worst, std::abs(product) / std::sqrt(square * dot(j, j)));
     }
   }
   return worst;
@@ -74,22 +83,24 @@ Json describe_sizes(std::vector<double> sizes) {
           {"max", percentile(sizes, 1.0)}};
 }
 
-// As the extension stores it (16-bit indices every 4 bytes, weights in groups of 4 floats), against
-// the signal as float32.
-Json describe_bytes(const cpca::Encoding& encoding) {
-  const auto component_count = static_cast<std::size_t>(encoding.component_count);
-  const std::size_t indices = encoding.point_count * 4;
-  const std::size_t weights =
-      encoding.point_count * ((component_count + 3) / 4 * 4) * sizeof(float);
-  const std::size_t means = encoding.means.size() * sizeof(float);
-  const std::size_t bases = encoding.bases.size() * sizeof(float);
-  return {{"cluster_indices", indices},
-          {"weights", weights},
-          {"means", means},
-          {"bases", bases},
-          {"total", indices + weights + means + bases},
+// As the extension stores it, against the signal as float32.
+Json describe_bytes(const gltf::PrecomputedTransfer& transfer) {
+  const cpca::Encoding& encoding = transfer.encoding;
+  const gltf::StoredBytes bytes = gltf::stored_bytes(transfer);
+  return {{"cluster_indices", bytes.cluster_indices},
+          {"weights", bytes.weights},
+          {"means", bytes.means},
+          {"bases", bytes.bases},
+          {"tables", bytes.tables},
+          {"total", bytes.total()},
           {"uncompressed",
            encoding.point_count * static_cast<std::size_t>(encoding.dimension) * sizeof(float)}};
+}
+
+const char* name_of(cpca::WeightFormat format) {
+  return format == cpca::WeightFormat::float32   ? "float"
+         : format == cpca::WeightFormat::unorm16 ? "unorm16"
+                                                 : "unorm8";
 }
 
 void check_encoding(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
@@ -121,14 +132,14 @@ void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
   const auto unused = std::count(sizes.begin(), sizes.end(), 0.0);
   double orthonormality = 0.0;
   for (int k = 0; k < encoding.cluster_count; ++k) {
-    const double error = orthonormality_error(encoding, k);
+    const double error = orthonormality_error(transfer, k);
     if (!(error <= 1e-3)) {
       inspection.error(fmt::format("cluster {}", k),
                        fmt::format("basis vectors are not orthonormal: off by {:.3g}", error));
     }
     orthonormality = std::max(orthonormality, error);
   }
-  const Json bytes = describe_bytes(encoding);
+  const Json bytes = describe_bytes(transfer);
   inspection.json["precomputed_transfer"] = {
       {"band_count", transfer.band_count},
       {"row_count", transfer.row_count},
@@ -139,6 +150,11 @@ void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
       {"point_count", encoding.point_count},
       {"cluster_count", encoding.cluster_count},
       {"component_count", encoding.component_count},
+      {"adaptive", !encoding.component_counts.empty()},
+      {"weights", name_of(transfer.weight_format)},
+      {"supercluster_count", transfer.first_clusters.empty()
+                                 ? static_cast<std::size_t>(encoding.cluster_count)
+                                 : transfer.first_clusters.size()},
       {"unused_cluster_count", unused},
       {"cluster_size", describe_sizes(sizes)},
       {"bytes", bytes},

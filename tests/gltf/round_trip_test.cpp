@@ -109,6 +109,105 @@ TEST(GltfRoundTrip, MeansAloneAreATransferToo) {
   EXPECT_TRUE(after->encoding.weights.empty());
 }
 
+// Clusters of 2, 0, 3, … components of 3.
+PrecomputedTransfer adaptive_transfer() {
+  PrecomputedTransfer transfer = samples::transfer(6, 4, 3);
+  cpca::Encoding& encoding = transfer.encoding;
+  encoding.component_counts = {2, 0, 3, 1};
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t i = encoding.component_counts[k]; i < 3; ++i) {
+      std::fill_n(encoding.bases.begin() + static_cast<std::ptrdiff_t>((3 * k + i) * 27), 27, 0.0f);
+    }
+  }
+  for (std::size_t p = 0; p < 6; ++p) {
+    for (std::size_t i = encoding.component_counts[encoding.cluster_of_point[p]]; i < 3; ++i) {
+      encoding.weights[3 * p + i] = 0.0f;
+    }
+  }
+  return transfer;
+}
+
+PrecomputedTransfer after_round_trip(const PrecomputedTransfer& transfer, std::string* json) {
+  Document document = Document::from_scene(samples::scene());
+  const auto bare = document.glb_bytes();
+  document.set_precomputed_transfer(transfer);
+  const auto bytes = document.glb_bytes();
+  json->assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  document = Document::parse(bytes, "a.glb");
+  PrecomputedTransfer after = document.precomputed_transfer().value();
+  document.remove_precomputed_transfer();
+  EXPECT_EQ(document.glb_bytes(), bare);
+  return after;
+}
+
+TEST(GltfRoundTrip, AdaptiveAndNormalizedTransferComesBackAndGoesWithoutATrace) {
+  for (const bool adaptive : {false, true}) {
+    for (const auto format :
+         {cpca::WeightFormat::float32, cpca::WeightFormat::unorm16, cpca::WeightFormat::unorm8}) {
+      PrecomputedTransfer before = adaptive ? adaptive_transfer() : samples::transfer(6, 4, 5);
+      cpca::normalize_weights(format, before.encoding);
+      before.weight_format = format;
+      before.first_clusters = {0, 1, 3};
+      std::string json;
+      const PrecomputedTransfer after = after_round_trip(before, &json);
+      EXPECT_EQ(after.weight_format, format);
+      EXPECT_EQ(after.first_clusters, before.first_clusters);
+      EXPECT_EQ(after.encoding.component_counts, before.encoding.component_counts);
+      EXPECT_EQ(after.encoding.means, before.encoding.means);
+      EXPECT_EQ(after.encoding.bases, before.encoding.bases);
+      EXPECT_EQ(after.encoding.weights, before.encoding.weights);
+      const bool first = !adaptive && format == cpca::WeightFormat::float32;
+      EXPECT_NE(json.find(first ? "\"conventions\":1" : "\"conventions\":2"), std::string::npos);
+      EXPECT_EQ(json.find("_PRT_WEIGHTS_0") == std::string::npos, adaptive);
+    }
+  }
+}
+
+TEST(GltfRoundTrip, StoredBytesAreThoseThatTheTransferAdds) {
+  for (const bool adaptive : {false, true}) {
+    PrecomputedTransfer transfer = adaptive ? adaptive_transfer() : samples::transfer(6, 4, 5);
+    cpca::normalize_weights(cpca::WeightFormat::unorm16, transfer.encoding);
+    transfer.weight_format = cpca::WeightFormat::unorm16;
+    transfer.first_clusters = {0, 2};
+    Document document = Document::from_scene(samples::scene());
+    const auto binary_bytes = [&] {  // the second chunk: after the first, its own length
+      const auto bytes = document.glb_bytes();
+      std::uint32_t json_length = 0, length = 0;
+      std::memcpy(&json_length, &bytes[12], 4);
+      std::memcpy(&length, &bytes[20 + json_length], 4);
+      return std::size_t{length};
+    };
+    const std::size_t before = binary_bytes();
+    document.set_precomputed_transfer(transfer);
+    const std::size_t added = binary_bytes() - before;
+    EXPECT_LE(stored_bytes(transfer).total(), added);
+    EXPECT_LT(added, stored_bytes(transfer).total() + 16);  // alignment between tables
+  }
+}
+
+TEST(GltfRoundTrip, MoreClustersThanAnIndexCanNameAreRefused) {
+  PrecomputedTransfer transfer = samples::transfer(6, 1, 0);
+  Document document = Document::from_scene(samples::scene());
+  const auto grow = [&](int cluster_count) {
+    transfer.encoding.cluster_count = cluster_count;
+    transfer.encoding.means.resize(static_cast<std::size_t>(cluster_count) * 27);
+    transfer.encoding.cluster_of_point[3] = static_cast<std::uint32_t>(cluster_count - 1);
+  };
+  grow(65536);
+  document.set_precomputed_transfer(transfer);
+  EXPECT_EQ(document.precomputed_transfer()->encoding.cluster_of_point[3], 65535u);
+  grow(65537);
+  EXPECT_THROW(document.set_precomputed_transfer(transfer), Error);
+}
+
+TEST(GltfRoundTrip, NormalizedWeightsOutOfRangeAreRefused) {
+  PrecomputedTransfer transfer = samples::transfer(6);
+  transfer.weight_format = cpca::WeightFormat::unorm8;
+  transfer.encoding.weights[3] = 1.5f;
+  Document document = Document::from_scene(samples::scene());
+  EXPECT_THROW(document.set_precomputed_transfer(transfer), Error);
+}
+
 TEST(GltfRoundTrip, WritesNoTransferThatItWouldNotRead) {
   const auto error_of = [](const PrecomputedTransfer& transfer) -> std::string {
     Document document = Document::from_scene(samples::scene());

@@ -30,15 +30,16 @@ TEST(Specification, BasisFunctionsAreOurs) {
   }
 }
 
-TEST(Specification, ExampleGivesTheExitRadianceOfTheTestVectors) {
-  const nlohmann::json vectors = test_vectors();
+// `vectors`: a file, lights and the exit radiance of each of its vertices under them.
+void expect_exit_radiance(const nlohmann::json& vectors) {
   const Document document = Document::load(kFolder / vectors.at("file").get<std::string>());
   const auto transfer = document.precomputed_transfer();
   ASSERT_TRUE(transfer);
   const cpca::Encoding& encoding = transfer->encoding;
   ASSERT_EQ(encoding.point_count, document.scene().vertex_count());
   ASSERT_GE(vectors.at("cases").size(), 3u);
-  const std::size_t n = static_cast<std::size_t>(transfer->band_count * transfer->band_count);
+  const auto n = static_cast<std::size_t>(transfer->band_count * transfer->band_count);
+  const std::size_t channel_stride = transfer->channel_count == 3 ? n : 0;
   for (const auto& entry : vectors.at("cases")) {
     const auto light = entry.at("light").get<std::vector<std::vector<float>>>();
     const auto expected = entry.at("exitRadiance").get<std::vector<std::vector<float>>>();
@@ -48,11 +49,26 @@ TEST(Specification, ExampleGivesTheExitRadianceOfTheTestVectors) {
       cpca::reconstruct(encoding, vertex, row);
       for (std::size_t c = 0; c < 3; ++c) {
         float radiance = 0.0f;
-        for (std::size_t i = 0; i < n; ++i) radiance += row[c * n + i] * light.at(c).at(i);
+        for (std::size_t i = 0; i < n; ++i)
+          radiance += row[c * channel_stride + i] * light.at(c).at(i);
         EXPECT_NEAR(radiance, expected[vertex].at(c), 1e-5f) << vertex << " " << c;
       }
     }
   }
+}
+
+TEST(Specification, ExampleGivesTheExitRadianceOfTheTestVectors) {
+  expect_exit_radiance(test_vectors());
+}
+
+TEST(Specification, AdaptiveExampleWithNormalizedWeightsDoesToo) {
+  const nlohmann::json vectors = test_vectors().at("adaptive");
+  expect_exit_radiance(vectors);
+  const auto transfer =
+      Document::load(kFolder / vectors.at("file").get<std::string>()).precomputed_transfer();
+  EXPECT_EQ(transfer->weight_format, cpca::WeightFormat::unorm8);
+  EXPECT_EQ(transfer->encoding.component_counts, std::vector<std::uint32_t>({2, 0, 3}));
+  EXPECT_EQ(transfer->first_clusters, std::vector<std::uint32_t>({0, 2}));
 }
 
 }  // namespace

@@ -17,10 +17,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// The example of the specification (4 vertices, 2 clusters, 5 components), to be broken.
-class GltfTransfer : public testing::Test {
+// An example of the specification, to be broken.
+class BrokenExample : public testing::Test {
  protected:
-  GltfTransfer() {
+  explicit BrokenExample(const std::string& name)
+      : json_(ordered_json::parse(
+            read_text_file("../docs/extensions/PRTKIT_precomputed_transfer/" + name))) {
     const std::string uri = json_["buffers"][0]["uri"];
     bytes_ = decode_data_uri(uri, {"a.gltf", "buffer 0"});
   }
@@ -58,9 +60,30 @@ class GltfTransfer : public testing::Test {
     return json_["extensions"]["PRTKIT_precomputed_transfer"]["transfers"][0];
   }
 
-  ordered_json json_ = ordered_json::parse(
-      read_text_file("../docs/extensions/PRTKIT_precomputed_transfer/example.gltf"));
+  ordered_json json_;
   Bytes bytes_;
+};
+
+// 4 vertices, 2 clusters, 5 components, float weights.
+class GltfTransfer : public BrokenExample {
+ protected:
+  GltfTransfer() : BrokenExample("example.gltf") {}
+};
+
+// 4 vertices, 3 clusters of 2, 0 and 3 components, weights of 8 bits, 2 superclusters.
+class GltfAdaptiveTransfer : public BrokenExample {
+ protected:
+  GltfAdaptiveTransfer() : BrokenExample("example_adaptive.gltf") {}
+
+  ordered_json& table(const char* key) { return json_["accessors"][header()[key].get<int>()]; }
+  ordered_json& weights() {
+    auto& reference = json_["meshes"][0]["primitives"][0]["extensions"];
+    return reference["PRTKIT_precomputed_transfer"]["weights"];
+  }
+  void set_number(const char* key, std::size_t element, std::uint16_t value) {
+    const ordered_json& view = json_["bufferViews"][table(key)["bufferView"].get<int>()];
+    std::memcpy(&bytes_.at(view["byteOffset"].get<std::size_t>() + 2 * element), &value, 2);
+  }
 };
 
 #define EXPECT_PART(part) EXPECT_PRED_FORMAT2(testing::IsSubstring, part, error())
@@ -94,7 +117,7 @@ TEST_F(GltfTransfer, RejectsAttributesOfOtherTypes) {
 
 TEST_F(GltfTransfer, RejectsNumbersOutOfRange) {
   for (const auto& [key, value] :
-       {std::pair("conventions", 2), std::pair("bandCount", 17), std::pair("channelCount", 2),
+       {std::pair("conventions", 3), std::pair("bandCount", 17), std::pair("channelCount", 2),
         std::pair("clusterCount", 0), std::pair("componentCount", -1), std::pair("means", 999)}) {
     const ordered_json before = header()[key];
     header()[key] = value;
@@ -110,6 +133,82 @@ TEST_F(GltfTransfer, RejectsHeadersOfTheWrongKind) {
     extension = {{"transfers", transfers}};
     EXPECT_PART("an array of one object");
   }
+}
+
+TEST_F(GltfTransfer, RejectsWhatTheFirstConventionsDoNotHave) {
+  for (const char* name : {"_PRT_WEIGHTS_0", "_PRT_WEIGHTS_1"}) {
+    attribute(name)["componentType"] = 5121;
+    attribute(name)["normalized"] = true;
+  }
+  EXPECT_PART("normalised weights in conventions 1");
+  header()["conventions"] = 2;
+  EXPECT_EQ(error().find("_PRT_WEIGHTS_0"), std::string::npos);  // other bytes, the right type
+  attribute("_PRT_WEIGHTS_0")["componentType"] = 5126;
+  attribute("_PRT_WEIGHTS_0").erase("normalized");
+  EXPECT_PART("_PRT_WEIGHTS_1: found an accessor of another type");  // all or none
+}
+
+TEST_F(GltfTransfer, TakesNormalizedIntegersOnlyAsNormalized) {
+  header()["conventions"] = 2;
+  attribute("_PRT_WEIGHTS_0")["componentType"] = 5123;
+  EXPECT_PART("_PRT_WEIGHTS_0: found an accessor of another type");
+}
+
+TEST_F(GltfAdaptiveTransfer, ExampleIsGood) { EXPECT_EQ(error(), "no error"); }
+
+TEST_F(GltfAdaptiveTransfer, NeedsTheSecondConventions) {
+  header()["conventions"] = 1;
+  EXPECT_PART("componentCounts: found conventions 1");
+}
+
+TEST_F(GltfAdaptiveTransfer, RejectsCountsAboveTheMost) {
+  set_number("componentCounts", 1, 4);
+  EXPECT_PART("componentCounts: found 4");
+}
+
+TEST_F(GltfAdaptiveTransfer, RejectsTablesOfOtherSizesAndTypes) {
+  for (const char* key : {"componentCounts", "bases"}) {
+    table(key)["count"] = table(key)["count"].get<int>() - 1;
+    EXPECT_PART(key);
+    table(key)["count"] = table(key)["count"].get<int>() + 1;
+  }
+  for (const char* key : {"componentCounts", "superclusters"}) {
+    table(key)["componentType"] = 5122;
+    EXPECT_PART(std::string(key) + ": found an accessor of another type");
+    table(key)["componentType"] = 5123;
+  }
+  header()["superclusters"] = 99;
+  EXPECT_PART("superclusters: found 99");
+}
+
+TEST_F(GltfAdaptiveTransfer, RejectsSuperclustersOutOfOrder) {
+  for (const auto& [element, value] : {std::pair(0, 1), {1, 0}, {1, 3}}) {
+    const Bytes before = bytes_;
+    set_number("superclusters", static_cast<std::size_t>(element),
+               static_cast<std::uint16_t>(value));
+    EXPECT_PART("superclusters: found another order");
+    bytes_ = before;
+  }
+}
+
+TEST_F(GltfAdaptiveTransfer, RejectsWeightsOfAnotherCountOrNone) {
+  json_["accessors"][weights().get<int>()]["count"] = 7;
+  EXPECT_PART("weights: found 7 elements, expected 8");
+  weights() = 99;
+  EXPECT_PART("weights: found 99");
+  json_["meshes"][0]["primitives"][0]["extensions"]["PRTKIT_precomputed_transfer"].erase("weights");
+  EXPECT_PART("weights: found no whole number");
+}
+
+TEST_F(GltfAdaptiveTransfer, RejectsPaddingBeyondTheLimits) {
+  // Accessors without a view are zeros that take no bytes.
+  header()["bandCount"] = 16;
+  header()["rowCount"] = 256;
+  header()["componentCount"] = 256;
+  header()["clusterCount"] = 40;
+  table("means") = {{"componentType", 5126}, {"count", 40 * 65536}, {"type", "SCALAR"}};
+  table("componentCounts") = {{"componentType", 5123}, {"count", 40}, {"type", "SCALAR"}};
+  EXPECT_PART("bases: found 671088640 numbers");
 }
 
 TEST_F(GltfTransfer, RemovingKeepsAccessorsThatOthersUse) {

@@ -43,6 +43,22 @@ TEST_F(SchemaTest, AcceptsWhatThePipelineWrites) {
   EXPECT_TRUE(violations(good(), {{"transfer", 0}}).empty());
 }
 
+TEST_F(SchemaTest, AcceptsTheExamplesOfTheSpecification) {
+  for (const char* name : {"example.gltf", "example_adaptive.gltf"}) {
+    const std::filesystem::path folder = "../docs/extensions/PRTKIT_precomputed_transfer";
+    EXPECT_TRUE(schema_violations(folder / name).empty()) << name;
+  }
+}
+
+TEST_F(SchemaTest, ComponentCountsBelongToTheSecondConventions) {
+  nlohmann::json adaptive = good();
+  adaptive["transfers"][0]["componentCounts"] = 5;
+  EXPECT_FALSE(violations(adaptive, {{"transfer", 0}, {"weights", 6}}).empty());
+  adaptive["transfers"][0]["conventions"] = 2;
+  EXPECT_TRUE(violations(adaptive, {{"transfer", 0}, {"weights", 6}}).empty());
+  EXPECT_FALSE(violations(adaptive, {{"transfer", 0}, {"weights", "x"}}).empty());
+}
+
 TEST_F(SchemaTest, NamesWhatBreaksIt) {
   nlohmann::json bad = good();
   bad["transfers"][0]["bandCount"] = 17;
@@ -59,7 +75,7 @@ TEST_F(SchemaTest, RejectsEachBrokenField) {
     json["transfers"][0][key] = value;
     return json;
   };
-  EXPECT_FALSE(violations(broken("conventions", 2), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(broken("conventions", 3), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("channelCount", 2), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("means", "three"), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("componentCount", 0), {{"transfer", 0}}).empty());

@@ -1,0 +1,55 @@
+// What reading and writing PRTKIT_precomputed_transfer share: names and limits of
+// docs/extensions/PRTKIT_precomputed_transfer/README.md.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <numeric>
+#include <string>
+
+#include "gltf/precomputed_transfer.h"
+
+namespace prt::gltf {
+
+/// Versions of the conventions: the second has component counts and normalised weights.
+constexpr int kFirstConventions = 1, kLastConventions = 2;
+constexpr const char* kClusterAttribute = "_PRT_CLUSTER";
+constexpr int kMaxBandCount = 16, kMaxRowCount = 256, kMaxClusterCount = 65536,
+              kMaxComponentCount = 256;
+
+inline std::string weights_attribute(std::size_t group) {
+  return "_PRT_WEIGHTS_" + std::to_string(group);
+}
+
+inline std::size_t weight_group_count(int component_count) {
+  return (static_cast<std::size_t>(component_count) + 3) / 4;
+}
+
+inline int component_type_of(cpca::WeightFormat format) {
+  return format == cpca::WeightFormat::float32   ? TINYGLTF_COMPONENT_TYPE_FLOAT
+         : format == cpca::WeightFormat::unorm16 ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                                                 : TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+}
+
+/// Vectors of all clusters.
+inline std::size_t vector_count(const cpca::Encoding& encoding) {
+  return encoding.component_counts.empty()
+             ? static_cast<std::size_t>(encoding.cluster_count) *
+                   static_cast<std::size_t>(encoding.component_count)
+             : std::accumulate(encoding.component_counts.begin(), encoding.component_counts.end(),
+                               std::size_t{0});
+}
+
+/// Of points [first, last), weights without padding; adaptive encodings store them so.
+inline std::size_t packed_weight_count(const cpca::Encoding& encoding, std::size_t first,
+                                       std::size_t last) {
+  std::size_t count = 0;
+  for (std::size_t p = first; p < last; ++p) {
+    count += static_cast<std::size_t>(
+        encoding.component_count_of(static_cast<int>(encoding.cluster_of_point[p])));
+  }
+  return count;
+}
+
+}  // namespace prt::gltf
