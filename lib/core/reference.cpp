@@ -34,14 +34,17 @@ bool has_scheme(std::string_view name) {
   });
 }
 
-/// With links followed.
-bool is_inside(const std::filesystem::path& target, const std::filesystem::path& folder) {
+/// With links followed; empty when that fails.
+std::filesystem::path real_path(const std::filesystem::path& path) {
   std::error_code error;
-  const auto base = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
-  if (error) return false;
-  const auto real = std::filesystem::weakly_canonical(target.empty() ? "." : target, error);
-  if (error) return false;
-  return std::mismatch(base.begin(), base.end(), real.begin(), real.end()).first == base.end();
+  const auto real = std::filesystem::weakly_canonical(path.empty() ? "." : path, error);
+  return error ? std::filesystem::path() : real;
+}
+
+bool is_inside(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  return !path.empty() && !folder.empty() &&
+         std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
+             folder.end();
 }
 
 }  // namespace
@@ -64,8 +67,8 @@ std::filesystem::path resolve_reference(const std::filesystem::path& file,
   if (has_scheme(name)) reject("name with a scheme");
   const std::filesystem::path path(name);
   if (std::find(path.begin(), path.end(), "..") != path.end()) reject("path with \"..\"");
-  const std::filesystem::path target = file.parent_path() / path;
-  if (!is_inside(target, file.parent_path())) reject("link out of the folder");
+  const std::filesystem::path target = real_path(file.parent_path() / path);
+  if (!is_inside(target, real_path(file.parent_path()))) reject("link out of the folder");
   return target;
 }
 

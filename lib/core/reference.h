@@ -9,10 +9,10 @@ namespace prt {
 
 enum class Escapes { none, percent };  ///< glTF's URIs are percent-encoded, names in OBJ are not
 
-/// The path of what `file` names by `reference`. Throws Error (bad_input) when the name is empty,
-/// absolute, has a scheme (or a drive letter) or a ".." part, whether written plainly, with
-/// backslashes or percent-encoded. Links are followed as long as they lead to something in
-/// the same folder.
+/// The real path of what `file` names by `reference`, without links, so that what was checked is
+/// what the caller opens. Throws Error (bad_input) when the name is empty, absolute, has a scheme
+/// (or a drive letter) or a ".." part, whether written plainly, with backslashes or
+/// percent-encoded. Links are followed as long as they lead to something in the same folder.
 std::filesystem::path resolve_reference(const std::filesystem::path& file,
                                         std::string_view reference, Escapes escapes);
 

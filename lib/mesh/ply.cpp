@@ -8,37 +8,22 @@
 #include "core/checked.h"
 #include "core/error.h"
 #include "mesh/mesh_file.h"
+#include "mesh/ply_header.h"
 #include "mesh/text.h"
 
 namespace prt::mesh {
 
 namespace {
 
-enum class Format { ascii, little_endian, big_endian };
-enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
-
-struct Property {
-  std::string name;
-  Type type;
-  bool is_list = false;
-  Type count_type = Type::u8;
-};
-
-struct Element {
-  std::string name;
-  std::size_t count = 0;
-  std::vector<Property> properties;
-};
-
-std::size_t size_of(Type type) {
+std::size_t size_of(PlyType type) {
   switch (type) {
-    case Type::i8:
-    case Type::u8:
+    case PlyType::i8:
+    case PlyType::u8:
       return 1;
-    case Type::i16:
-    case Type::u16:
+    case PlyType::i16:
+    case PlyType::u16:
       return 2;
-    case Type::f64:
+    case PlyType::f64:
       return 8;
     default:
       return 4;
@@ -51,8 +36,9 @@ class PlyReader {
       : rest_(bytes), path_(path) {}
 
   TriangleMesh read() {
-    read_header();
-    for (const Element& element : elements_) {
+    const PlyHeader header = take_ply_header(rest_, path_);
+    format_ = header.format;
+    for (const PlyElement& element : header.elements) {
       check_count(element);
       if (element.name == "vertex") {
         read_vertices(element);
@@ -71,84 +57,12 @@ class PlyReader {
         what, {.file = path_.string(), .element = element, .found = found, .expected = expected});
   }
 
-  std::string_view header_line() {
-    const std::size_t end = rest_.find('\n');
-    if (end == rest_.npos) reject("PLY header has no end_header: the file is truncated");
-    std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(end + 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    return line;
-  }
-
-  void read_header() {
-    if (!rest_.starts_with("ply\n") && !rest_.starts_with("ply\r\n")) {
-      reject("not a PLY file", {}, excerpt(rest_.substr(0, 4)), "the first line \"ply\"");
-    }
-    for (std::string_view line = header_line();;) {
-      line = header_line();
-      const std::string_view key = take_word(line);
-      if (key == "end_header") return;
-      if (key == "format") {
-        read_format(take_word(line));
-      } else if (key == "element") {
-        const std::string name(take_word(line));
-        const auto count = to_integer(take_word(line));
-        if (!count || *count < 0) reject("bad element count", "element " + excerpt(name));
-        elements_.push_back({name, static_cast<std::size_t>(*count), {}});
-      } else if (key == "property") {
-        if (elements_.empty()) reject("property before any element", "header");
-        elements_.back().properties.push_back(read_property(line));
-      }
-    }
-  }
-
-  void read_format(std::string_view word) {
-    if (word == "ascii") {
-      format_ = Format::ascii;
-    } else if (word == "binary_little_endian") {
-      format_ = Format::little_endian;
-    } else if (word == "binary_big_endian") {
-      format_ = Format::big_endian;
-    } else {
-      reject("unknown PLY format", "header", excerpt(word),
-             "ascii, binary_little_endian or binary_big_endian");
-    }
-  }
-
-  Type read_type(std::string_view word) const {
-    constexpr std::pair<const char*, Type> kTypes[] = {
-        {"char", Type::i8},    {"int8", Type::i8},     {"uchar", Type::u8},
-        {"uint8", Type::u8},   {"short", Type::i16},   {"int16", Type::i16},
-        {"ushort", Type::u16}, {"uint16", Type::u16},  {"int", Type::i32},
-        {"int32", Type::i32},  {"uint", Type::u32},    {"uint32", Type::u32},
-        {"float", Type::f32},  {"float32", Type::f32}, {"double", Type::f64},
-        {"float64", Type::f64}};
-    for (const auto& [name, type] : kTypes) {
-      if (word == name) return type;
-    }
-    reject("unknown property type", "header", excerpt(word), "one of PLY's types");
-  }
-
-  Property read_property(std::string_view line) const {
-    const std::string_view word = take_word(line);
-    Property property;
-    property.is_list = word == "list";
-    if (property.is_list) {
-      property.count_type = read_type(take_word(line));
-      property.type = read_type(take_word(line));
-    } else {
-      property.type = read_type(word);
-    }
-    property.name = take_word(line);
-    return property;
-  }
-
   // Every property takes at least its binary size, or a digit and a separator, in what is left.
-  void check_count(const Element& element) const {
+  void check_count(const PlyElement& element) const {
     std::size_t least = 0;
-    for (const Property& property : element.properties) {
-      const Type first = property.is_list ? property.count_type : property.type;
-      least += format_ == Format::ascii ? 2 : size_of(first);
+    for (const PlyProperty& property : element.properties) {
+      const PlyType first = property.is_list ? property.count_type : property.type;
+      least += format_ == PlyFormat::ascii ? 2 : size_of(first);
     }
     // The last separator of an ASCII file may be missing.
     if (least == 0 || element.count > (rest_.size() + 1) / least) {
@@ -163,7 +77,7 @@ class PlyReader {
     }
   }
 
-  double read_ascii_number(const Element& element, std::size_t i) {
+  double read_ascii_number(const PlyElement& element, std::size_t i) {
     std::size_t begin = 0;
     while (begin < rest_.size() && static_cast<unsigned char>(rest_[begin]) <= ' ') ++begin;
     std::size_t end = begin;
@@ -184,50 +98,51 @@ class PlyReader {
     std::array<char, sizeof(T)> bytes;
     std::memcpy(bytes.data(), rest_.data(), sizeof(T));
     rest_.remove_prefix(sizeof(T));
-    if (format_ == Format::big_endian) std::reverse(bytes.begin(), bytes.end());
+    if (format_ == PlyFormat::big_endian) std::reverse(bytes.begin(), bytes.end());
     return static_cast<double>(std::bit_cast<T>(bytes));
   }
 
-  double read_number(Type type, const Element& element, std::size_t i) {
-    if (format_ == Format::ascii) return read_ascii_number(element, i);
+  double read_number(PlyType type, const PlyElement& element, std::size_t i) {
+    if (format_ == PlyFormat::ascii) return read_ascii_number(element, i);
     if (rest_.size() < size_of(type)) reject("the file is truncated", label(element, i));
     switch (type) {
-      case Type::i8:
+      case PlyType::i8:
         return take_binary<std::int8_t>();
-      case Type::u8:
+      case PlyType::u8:
         return take_binary<std::uint8_t>();
-      case Type::i16:
+      case PlyType::i16:
         return take_binary<std::int16_t>();
-      case Type::u16:
+      case PlyType::u16:
         return take_binary<std::uint16_t>();
-      case Type::i32:
+      case PlyType::i32:
         return take_binary<std::int32_t>();
-      case Type::u32:
+      case PlyType::u32:
         return take_binary<std::uint32_t>();
-      case Type::f32:
+      case PlyType::f32:
         return take_binary<float>();
       default:
         return take_binary<double>();
     }
   }
 
-  static std::string label(const Element& element, std::size_t i) {
+  static std::string label(const PlyElement& element, std::size_t i) {
     return element.name + " " + std::to_string(i);
   }
 
-  std::size_t read_list_count(const Property& property, const Element& element, std::size_t i) {
+  std::size_t read_list_count(const PlyProperty& property, const PlyElement& element,
+                              std::size_t i) {
     const double count = read_number(property.count_type, element, i);
-    const std::size_t least = format_ == Format::ascii ? 2 : size_of(property.type);
+    const std::size_t least = format_ == PlyFormat::ascii ? 2 : size_of(property.type);
     if (!(count >= 0.0) || count > static_cast<double>((rest_.size() + 1) / least)) {
       reject("the file is truncated", label(element, i), std::to_string(count) + " list entries");
     }
     return static_cast<std::size_t>(count);
   }
 
-  void read_vertices(const Element& element) {
+  void read_vertices(const PlyElement& element) {
     const auto column = [&](const char* name) {
       const auto found = std::find_if(element.properties.begin(), element.properties.end(),
-                                      [&](const Property& p) { return p.name == name; });
+                                      [&](const PlyProperty& p) { return p.name == name; });
       return static_cast<std::size_t>(found - element.properties.begin());
     };
     const std::size_t none = element.properties.size();
@@ -240,8 +155,8 @@ class PlyReader {
     const char* v = has({"s", "t"}) ? "t" : "v";
     const bool texcoords = has({u, v});
     const auto color_scale = [&](std::size_t c) {
-      const Type type = element.properties[c].type;
-      return type == Type::u8 ? 1.0f / 255.0f : type == Type::u16 ? 1.0f / 65535.0f : 1.0f;
+      const PlyType type = element.properties[c].type;
+      return type == PlyType::u8 ? 1.0f / 255.0f : type == PlyType::u16 ? 1.0f / 65535.0f : 1.0f;
     };
     std::vector<float> row(none);
     const auto at = [&](const char* name) { return row[column(name)]; };
@@ -258,9 +173,9 @@ class PlyReader {
     }
   }
 
-  void read_row(const Element& element, std::size_t i, std::vector<float>& row) {
+  void read_row(const PlyElement& element, std::size_t i, std::vector<float>& row) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      const Property& property = element.properties[p];
+      const PlyProperty& property = element.properties[p];
       if (!property.is_list) {
         row[p] = static_cast<float>(read_number(property.type, element, i));
         continue;
@@ -271,9 +186,9 @@ class PlyReader {
     }
   }
 
-  void read_others(const Element& element) {
+  void read_others(const PlyElement& element) {
     for (std::size_t i = 0; i < element.count; ++i) {
-      for (const Property& property : element.properties) {
+      for (const PlyProperty& property : element.properties) {
         const bool is_face = property.is_list && element.name == "face" &&
                              (property.name == "vertex_indices" || property.name == "vertex_index");
         if (is_face) {
@@ -286,7 +201,7 @@ class PlyReader {
     }
   }
 
-  void read_face(const Property& property, const Element& element, std::size_t i) {
+  void read_face(const PlyProperty& property, const PlyElement& element, std::size_t i) {
     const std::size_t count = read_list_count(property, element, i);
     std::array<std::uint32_t, 3> fan{};
     for (std::size_t k = 0; k < count; ++k) {
@@ -311,8 +226,7 @@ class PlyReader {
 
   std::string_view rest_;
   const std::filesystem::path& path_;
-  Format format_ = Format::ascii;
-  std::vector<Element> elements_;
+  PlyFormat format_ = PlyFormat::ascii;
   TriangleMesh mesh_;
 };
 

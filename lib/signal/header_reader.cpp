@@ -24,10 +24,10 @@ std::size_t largest_expansion(Imf::Compression compression) {
     case Imf::NO_COMPRESSION:
       return 1;
     case Imf::RLE_COMPRESSION:
-      return 64;
+      return 64;  // two bytes stand for a run of at most 128
     case Imf::ZIP_COMPRESSION:
     case Imf::ZIPS_COMPRESSION:
-      return 1032;
+      return 1032;  // zlib: a match of 258 bytes takes at least two bits
     default:
       return 0;
   }
@@ -98,6 +98,7 @@ void HeaderReader::read_attributes(TransferSignal& signal) const {
   signal.row_count = int_attribute("prtkit_row_count", 1, kMaxRowCount);
   signal.channel_count = int_attribute("prtkit_channel_count", 1, 3);
   if (signal.channel_count == 2) reject("attribute prtkit_channel_count", "2", "1 or 3");
+  // Within these ranges the product fits an int.
   if (signal.dimension() > kMaxDimension) {
     reject("dimension", std::to_string(signal.dimension()), fmt::format("to {}", kMaxDimension));
   }
@@ -110,6 +111,7 @@ void HeaderReader::read_attributes(TransferSignal& signal) const {
   read_blocks(signal);
 }
 
+// A lossy file would pass every other check and hold wrong numbers.
 void HeaderReader::check_kind() const {
   if (header_.hasTileDescription() || (header_.hasType() && header_.type() != Imf::SCANLINEIMAGE)) {
     reject("image", "tiles or deep pixels", "scanlines");
@@ -119,6 +121,7 @@ void HeaderReader::check_kind() const {
   }
 }
 
+// As many channels as expected, and each expected one: so there are no others.
 void HeaderReader::check_channels(const TransferSignal& signal) const {
   const Imf::ChannelList& channels = header_.channels();
   int channel_count = 0;
@@ -138,6 +141,7 @@ void HeaderReader::check_channels(const TransferSignal& signal) const {
 }
 
 void HeaderReader::check_window(const TransferSignal& signal) const {
+  // The corners may be anywhere in the range of int: their difference need not fit one.
   const Imath::Box2i& window = header_.dataWindow();
   const auto width = std::int64_t{window.max.x} - window.min.x + 1;
   const auto height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -173,6 +177,7 @@ void HeaderReader::check_size(const TransferSignal& signal, std::size_t file_byt
   }
 }
 
+// In this order: each check relies on what those before it have bounded.
 TransferSignal HeaderReader::read(std::size_t file_bytes, std::size_t max_bytes) const {
   TransferSignal signal;
   check_kind();

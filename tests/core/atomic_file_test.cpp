@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "temporary_folder.h"
 
 namespace prt {
 namespace {
@@ -19,19 +20,12 @@ namespace fs = std::filesystem;
 
 class AtomicFileTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "prtkit-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::size_t entry_count() const {
     return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+        std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
   }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFileTest, AppearsOnlyOnCommit) {
@@ -79,7 +73,7 @@ TEST_F(AtomicFileTest, MissingFolderIsAnErrorThatNamesIt) {
 TEST_F(AtomicFileTest, SignalRemovesTheTemporaryFile) {
   const fs::path path = folder_ / "a.txt";
   std::ofstream(path) << "old";
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "gltf/samples.h"
+#include "temporary_folder.h"
 
 namespace prt::gltf {
 namespace {
@@ -19,7 +20,7 @@ class GltfImport : public testing::Test {
   ImportResult import(const ordered_json& json, const ImportOptions& options = {}) {
     return import_file(folder_.write("a.gltf", json.dump()), options);
   }
-  samples::TemporaryFolder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(GltfImport, ComputesMissingNormals) {

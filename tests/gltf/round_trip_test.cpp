@@ -5,6 +5,7 @@
 #include "gltf/document.h"
 #include "gltf/import.h"
 #include "gltf/samples.h"
+#include "temporary_folder.h"
 
 namespace prt::gltf {
 namespace {
@@ -19,7 +20,7 @@ void expect_same_mesh(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) 
 }
 
 TEST(GltfRoundTrip, SceneComesBackAsItWas) {
-  const samples::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const mesh::Scene before = samples::scene();
   Document::from_scene(before).save_glb(folder / "a.glb");
   const mesh::Scene after = Document::load(folder / "a.glb").scene();
@@ -46,7 +47,7 @@ TEST(GltfRoundTrip, SceneComesBackAsItWas) {
 // The colours of three vertices stored as VEC4 of normalised T, read back through import.
 template <class T>
 std::vector<Vec4> colors_stored_as(int component_type, const std::vector<T>& numbers) {
-  const samples::TemporaryFolder folder;
+  const TemporaryFolder folder;
   folder.write("colors.bin",
                {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)});
   auto json = samples::triangle_json();
@@ -74,7 +75,7 @@ TEST(GltfRoundTrip, ColoursMayBeBytesOrShorts) {
 }
 
 TEST(GltfRoundTrip, TransferComesBackAsItWas) {
-  const samples::TemporaryFolder folder;
+  const TemporaryFolder folder;
   Document document = Document::from_scene(samples::scene());
   const PrecomputedTransfer before = samples::transfer(6);
   document.set_precomputed_transfer(before);

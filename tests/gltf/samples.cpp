@@ -1,9 +1,5 @@
 #include "gltf/samples.h"
 
-#include <stdlib.h>
-
-#include <fstream>
-
 namespace prt::gltf::samples {
 
 namespace {
@@ -87,19 +83,6 @@ nlohmann::ordered_json triangle_json() {
        "sparse": {"count": 3, "indices": {"bufferView": 1, "componentType": 5123},
                   "values": {"bufferView": 0}}}]
   })");
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "prtkit-XXXXXX").string();
-  path_ = mkdtemp(pattern.data());
-}
-
-TemporaryFolder::~TemporaryFolder() { std::filesystem::remove_all(path_); }
-
-std::filesystem::path TemporaryFolder::write(const std::string& name,
-                                             const std::string& content) const {
-  std::ofstream(path_ / name, std::ios::binary) << content;
-  return path_ / name;
 }
 
 }  // namespace prt::gltf::samples

@@ -21,17 +21,4 @@ PrecomputedTransfer transfer(std::size_t vertex_count, int cluster_count = 3,
 /// be broken in one place.
 nlohmann::ordered_json triangle_json();
 
-/// A folder of this test's own, removed with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  /// Writes a file there and returns its path.
-  std::filesystem::path write(const std::string& name, const std::string& content) const;
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace prt::gltf::samples

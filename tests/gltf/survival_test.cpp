@@ -6,6 +6,7 @@
 #include "gltf/document.h"
 #include "gltf/import.h"
 #include "gltf/samples.h"
+#include "temporary_folder.h"
 
 namespace prt::gltf {
 namespace {
@@ -92,7 +93,7 @@ TEST(GltfSurvival, RemovingTheTransferLeavesNothingOfIt) {
 }
 
 TEST(GltfSurvival, EverythingUnknownSurvivesImport) {
-  const samples::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto path = folder.write("a.gltf", rich_json().dump());
   const ImportResult result = import_file(path, {});
   ordered_json expected = rich_json();
@@ -113,7 +114,7 @@ TEST(GltfSurvival, BoundsOfMovedNormalisedTargetsAreOfTheStoredNumbers) {
                                {"count", 3},
                                {"type", "VEC3"}});
   json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"] = 3;
-  const samples::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const ImportResult result = import_file(folder.write("a.gltf", json.dump()), {});
   const ordered_json after = json_of(result.document.glb_bytes());
   const auto moved = after["meshes"][0]["primitives"][0]["targets"][0]["POSITION"].get<int>();

@@ -11,6 +11,7 @@
 #include "gltf/container.h"
 #include "gltf/document.h"
 #include "gltf/samples.h"
+#include "temporary_folder.h"
 
 namespace prt::gltf {
 namespace {
@@ -44,7 +45,7 @@ class BrokenExample : public testing::Test {
   }
 
   std::string error() {
-    const samples::TemporaryFolder folder;
+    const TemporaryFolder folder;
     folder.write("a.bin", {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()});
     json_["buffers"][0]["uri"] = "a.bin";
     try {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "image/temporary_folder.h"
+#include "temporary_folder.h"
 
 namespace prt::image {
 namespace {

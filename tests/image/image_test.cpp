@@ -11,7 +11,7 @@
 #include "core/file.h"
 #include "core/random.h"
 #include "image/srgb.h"
-#include "image/temporary_folder.h"
+#include "temporary_folder.h"
 
 namespace prt::image {
 namespace {

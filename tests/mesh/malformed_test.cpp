@@ -3,25 +3,15 @@
 
 #include <cmath>
 #include <fstream>
-#include <functional>
 
-#include "core/error.h"
+#include "error_of.h"
 #include "image/image.h"
 #include "mesh/mesh_file.h"
 #include "mesh/prepare.h"
+#include "temporary_folder.h"
 
 namespace prt::mesh {
 namespace {
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
-    return error.what();
-  }
-  return "no error";
-}
 
 std::string obj_error(const std::string& text) {
   return error_of([&] { read_obj(text, "a.obj", {}); });
@@ -35,8 +25,6 @@ std::string off_error(const std::string& text) {
 std::string stl_error(const std::string& text) {
   return error_of([&] { read_stl(text, "a.stl"); });
 }
-
-#define EXPECT_HAS(text, part) EXPECT_PRED_FORMAT2(testing::IsSubstring, part, text)
 
 const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kPly =
@@ -78,9 +66,7 @@ TEST(ObjRead, RejectsMaterialsOutsideTheFolder) {
 }
 
 TEST(ObjRead, TexturesShareALimitOfPixels) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "prtkit_mesh_textures";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   image::write_image(folder / "a.png", image::Image(8, 8, 3));
   image::write_image(folder / "b.png", image::Image(8, 8, 3));
   std::ofstream(folder / "a.mtl") << "newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n"
@@ -91,20 +77,16 @@ TEST(ObjRead, TexturesShareALimitOfPixels) {
   };
   EXPECT_EQ(image_count(128), 2u);  // and the one used twice is there once
   EXPECT_EQ(image_count(127), 1u);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(ObjRead, RejectsLinksToMaterialsOutsideTheFolder) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "prtkit_mesh_links";
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "inside");
   std::ofstream(folder / "secret.mtl") << "newmtl a\nKd 1 0 0\n";
   std::filesystem::create_symlink(folder / "secret.mtl", folder / "inside" / "far.mtl");
   const std::string text = "mtllib far.mtl\n" + kVertices + "f 1 2 3\n";
   EXPECT_HAS(error_of([&] { read_obj(text, folder / "inside" / "a.obj", {}); }),
              "link out of the folder");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(ObjRead, VertexThatIsNotFiniteIsDroppedAndCounted) {

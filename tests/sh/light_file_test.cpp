@@ -1,26 +1,19 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "sh/directions.h"
 #include "sh/light.h"
+#include "temporary_folder.h"
 
 namespace prt::sh {
 namespace {
 
 class LightFile : public testing::Test {
  protected:
-  LightFile() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "prtkit-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    path_ = folder_ / "light.json";
-  }
-  ~LightFile() override { std::filesystem::remove_all(folder_); }
-
   void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
 
   /// The message of the error that reading `text` gives.
@@ -37,7 +30,8 @@ class LightFile : public testing::Test {
     return {};
   }
 
-  std::filesystem::path folder_, path_;
+  const TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "light.json";
 };
 
 std::string one_band(const std::string& red, const std::string& head = "\"prtkit_light\": 1") {
