@@ -1,0 +1,90 @@
+#include "brdf/brdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prt::brdf {
+
+namespace {
+
+Direction turned(const Direction& w, double angle) {
+  if (angle == 0) return w;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+}
+
+double weight(const WeightedLobe& term, const Direction& eye) {
+  return std::max({term.colour.x, term.colour.y, term.colour.z}) * term.lobe->importance(eye);
+}
+
+double total_weight(const Brdf& brdf, const Direction& eye) {
+  double sum = 0;
+  for (const WeightedLobe& term : brdf.lobes) sum += weight(term, eye);
+  return sum;
+}
+
+}  // namespace
+
+Colour evaluate(const Brdf& brdf, const Direction& light, const Direction& eye) {
+  const Direction l = turned(light, -brdf.rotation), e = turned(eye, -brdf.rotation);
+  Colour sum(0, 0, 0);
+  for (const WeightedLobe& term : brdf.lobes) sum += term.colour * term.lobe->evaluate(l, e);
+  return sum;
+}
+
+// Black materials reflect nothing whatever the direction: the last lobe is as good as any.
+Direction sample(const Brdf& brdf, const Direction& eye, double u0, double u1, double u2) {
+  const Direction e = turned(eye, -brdf.rotation);
+  double rest = u0 * total_weight(brdf, e);
+  std::size_t chosen = 0;
+  while (chosen + 1 < brdf.lobes.size()) {
+    rest -= weight(brdf.lobes[chosen], e);
+    if (rest < 0) break;
+    ++chosen;
+  }
+  return turned(brdf.lobes[chosen].lobe->sample(e, u1, u2), brdf.rotation);
+}
+
+double pdf(const Brdf& brdf, const Direction& light, const Direction& eye) {
+  const Direction l = turned(light, -brdf.rotation), e = turned(eye, -brdf.rotation);
+  const double total = total_weight(brdf, e);
+  if (total <= 0) return brdf.lobes.back().lobe->pdf(l, e);
+  double sum = 0;
+  for (const WeightedLobe& term : brdf.lobes) sum += weight(term, e) * term.lobe->pdf(l, e);
+  return sum / total;
+}
+
+// With specular_brdf S and s = (1 - VdotH)^5, Appendix B and the extensions say
+//   dielectric = (1 - w max(fr)) base/π + w fr S,  fr = f0 + (1 - f0) s,  w = specular
+//   metal      = (base + (1 - base) s) S
+// mixed by metallic; sorted here by the four lobes S (1-s), S s, (1-s)/π, s/π.
+Brdf make_brdf(const MetallicRoughness& material) {
+  const double eta = (1 - material.ior) / (1 + material.ior), w = material.specular;
+  const auto limited = [&](double colour) { return std::min(1.0, eta * eta * colour); };
+  const Colour& specular = material.specular_color;
+  const Colour f0(limited(specular.x), limited(specular.y), limited(specular.z));
+  const double f0_max = std::max({f0.x, f0.y, f0.z});
+  const double metal = material.metallic, dielectric = 1 - metal;
+  const Colour facing = f0 * (dielectric * w) + material.base_color * metal;
+  const double grazing = dielectric * w + metal;
+  const Colour base = material.base_color * dielectric;
+
+  const double alpha = std::clamp(material.roughness * material.roughness, kMinAlpha, 1.0);
+  const double strength = material.has_anisotropy ? material.anisotropy_strength : 0;
+  const double alpha_x = alpha + (1 - alpha) * strength * strength;
+  const Masking masking = material.has_anisotropy ? Masking::height_correlated : Masking::separable;
+  const std::vector<WeightedLobe> all = {
+      {facing, ggx(alpha_x, alpha, Fresnel::facing, masking)},
+      {Colour(grazing), ggx(alpha_x, alpha, Fresnel::grazing, masking)},
+      {base * (1 - w * f0_max), lambert(Fresnel::facing)},
+      {base * (1 - w), lambert(Fresnel::grazing)}};
+  Brdf brdf;
+  for (const WeightedLobe& term : all) {
+    if (term.colour != Colour(0)) brdf.lobes.push_back(term);
+  }
+  if (brdf.lobes.empty()) brdf.lobes.push_back({Colour(0), lambert()});
+  brdf.rotation = material.has_anisotropy ? material.anisotropy_rotation : 0;
+  return brdf;
+}
+
+}  // namespace prt::brdf

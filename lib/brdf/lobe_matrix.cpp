@@ -1,0 +1,202 @@
+#include "brdf/lobe_matrix.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "brdf/cubature.h"
+#include "core/parallel.h"
+#include "sh/basis.h"
+
+namespace prt::brdf {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::size_t coefficient_count(int band_count) {
+  return static_cast<std::size_t>(sh::coefficient_count(band_count));
+}
+
+Direction direction(const Point& angles) {
+  const double s = std::sin(angles.x);
+  return {s * std::cos(angles.y), s * std::sin(angles.y), std::cos(angles.x)};
+}
+
+// Cuts of [low, high] at the peak and at distances growing from it, so that no rule of 15 nodes
+// steps over a narrow peak.
+std::vector<double> graded(double low, double high, double peak, double width) {
+  std::vector<double> cuts{low, high};
+  const auto add = [&](double cut) {
+    if (cut > low && cut < high) cuts.push_back(cut);
+  };
+  add(peak);
+  for (double distance = 2 * width; distance < high - low; distance *= 6) {
+    add(peak - distance);
+    add(peak + distance);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  return cuts;
+}
+
+std::vector<Box> boxes(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<Box> all;
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < y.size(); ++j) {
+      all.push_back({x[i], x[i + 1], y[j], y[j + 1]});
+    }
+  }
+  return all;
+}
+
+// Polar angle and azimuth of the light. An eye in the xz plane sees an isotropic lobe the same on
+// both sides of it: half of the circle is enough, and functions of sines (m < 0) vanish.
+std::vector<Box> light_boxes(const Lobe& lobe, const Direction& eye, bool half) {
+  const double theta = std::acos(std::min(1.0, eye.z));
+  const double peak = half ? kPi : std::atan2(-eye.y, -eye.x);
+  const double width = lobe.width() / std::max(std::sin(theta), lobe.width() / kPi);
+  return boxes(graded(0, kPi / 2, theta, lobe.width()),
+               graded(half ? 0 : peak - kPi, half ? kPi : peak + kPi, peak, width));
+}
+
+int order_of(std::size_t coefficient) {
+  const int l = static_cast<int>(std::sqrt(static_cast<double>(coefficient) + 0.5));
+  return static_cast<int>(coefficient) - sh::coefficient_index(l, 0);
+}
+
+/// Functions of the polar angle and azimuth of the eye: all y_i(v) g_j(v), then the energies.
+class EyeIntegrand {
+ public:
+  EyeIntegrand(const Lobe& lobe, int row_band_count, int column_band_count, double tolerance)
+      : lobe_(lobe),
+        row_band_count_(row_band_count),
+        column_band_count_(column_band_count),
+        tolerance_(tolerance) {}
+
+  std::size_t matrix_size() const {
+    return coefficient_count(row_band_count_) * coefficient_count(column_band_count_);
+  }
+  std::size_t value_count() const { return matrix_size() + 2; }
+  double light_error() const { return light_error_; }
+
+  void operator()(std::span<const Point> points, std::span<double> values) {
+    std::vector<double> errors(points.size());
+    parallel_for(points.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        errors[p] = at(points[p], values.subspan(p * value_count(), value_count()));
+      }
+    });
+    for (double error : errors) light_error_ = std::max(light_error_, error);
+  }
+
+ private:
+  double at(const Point& angles, std::span<double> values) const {
+    const Direction eye = direction(angles);
+    const double sine = std::sin(angles.x);
+    const LobeMoments light = lobe_moments(lobe_, eye, column_band_count_, tolerance_);
+    const std::size_t column_count = light.values.size() - 1;
+    std::vector<double> row(coefficient_count(row_band_count_));
+    sh::evaluate(row_band_count_, eye.x, eye.y, eye.z, row);
+    double* value = values.data();
+    for (double y : row) {
+      for (std::size_t j = 0; j < column_count; ++j) *value++ = sine * y * light.values[j];
+    }
+    double energy = 0;
+    for (std::size_t j = 0; j < column_count; ++j) energy += light.values[j] * light.values[j];
+    *value++ = sine * energy;
+    *value = sine * light.values.back();
+    return light.error;
+  }
+
+  const Lobe& lobe_;
+  int row_band_count_, column_band_count_;
+  double tolerance_;
+  double light_error_ = 0;
+};
+
+// From the eye's azimuth 0 to all: of the integrals over the azimuth only those of cos² mφ or
+// sin² mφ are not 0, and both have the factor of |m|.
+double isotropic_entry(const std::vector<double>& values, std::size_t column_count, std::size_t i,
+                       std::size_t j) {
+  const int m = order_of(i);
+  if (m != order_of(j)) return 0;
+  const std::size_t up = m < 0 ? static_cast<std::size_t>(-2 * m) : 0;
+  return (m == 0 ? 2 * kPi : kPi) * values[(i + up) * column_count + j + up];
+}
+
+// From a quadrant to all four, which have the same lobe: functions of other symmetry about one of
+// the two planes cancel.
+double quadrant_entry(const std::vector<double>& values, std::size_t column_count, std::size_t i,
+                      std::size_t j) {
+  const int m = order_of(i), n = order_of(j);
+  const bool same = (m < 0) == (n < 0) && (m - n) % 2 == 0;
+  return same ? 4 * values[i * column_count + j] : 0;
+}
+
+}  // namespace
+
+LobeMoments lobe_moments(const Lobe& lobe, const Direction& eye, int band_count, double tolerance) {
+  const std::size_t count = coefficient_count(band_count);
+  const bool half = lobe.is_isotropic() && eye.y == 0 && eye.x >= 0;
+  std::vector<double> basis(count);
+  const Integrand integrand = [&](std::span<const Point> points, std::span<double> values) {
+    double* value = values.data();
+    for (const Point& angles : points) {
+      const Direction light = direction(angles);
+      const double kernel = lobe.evaluate(light, eye) * light.z;
+      const double factor = (half ? 2 : 1) * kernel * std::sin(angles.x);
+      sh::evaluate(band_count, light.x, light.y, light.z, basis);
+      for (double y : basis) *value++ = factor * y;
+      *value++ = factor * kernel;
+    }
+  };
+  CubatureOptions options;
+  options.value_count = count + 1;
+  options.controlled_count = count;
+  options.tolerance = tolerance;
+  options.max_box_count = 400;
+  const CubatureResult result = integrate(light_boxes(lobe, eye, half), integrand, options);
+  LobeMoments moments{result.values, result.error};
+  for (std::size_t i = 0; half && i < count; ++i) {
+    if (order_of(i) < 0) moments.values[i] = 0;
+  }
+  return moments;
+}
+
+double directional_albedo(const Lobe& lobe, const Direction& eye, double tolerance) {
+  return std::sqrt(4 * kPi) * lobe_moments(lobe, eye, 1, tolerance).values[0];
+}
+
+// The error of the light's integral enters B by at most ∫_H |y_i| <= sqrt(π) of it.
+LobeMatrix compute_lobe_matrix(const Lobe& lobe, int row_band_count, int column_band_count,
+                               double tolerance) {
+  assert(row_band_count >= 1 && row_band_count <= sh::kMaxBandCount);
+  assert(column_band_count >= 1 && column_band_count <= sh::kMaxBandCount);
+  EyeIntegrand integrand(lobe, row_band_count, column_band_count, tolerance / 4);
+  const bool isotropic = lobe.is_isotropic();
+  const double factor = isotropic ? 2 * kPi : 4;  // the rest of the circle
+  const std::vector<Box> domain = {{0, kPi / 2, 0, isotropic ? 0 : kPi / 2}};
+  CubatureOptions options;
+  options.value_count = integrand.value_count();
+  options.controlled_count = integrand.matrix_size();
+  options.tolerance = tolerance / 2 / factor;
+  options.max_box_count = 40;
+  const CubatureResult result = integrate(domain, std::ref(integrand), options);
+
+  LobeMatrix matrix{row_band_count, column_band_count, {}, 0, 0, 0};
+  const std::size_t column_count = coefficient_count(column_band_count);
+  for (std::size_t i = 0; i < coefficient_count(row_band_count); ++i) {
+    for (std::size_t j = 0; j < column_count; ++j) {
+      matrix.values.push_back(isotropic ? isotropic_entry(result.values, column_count, i, j)
+                                        : quadrant_entry(result.values, column_count, i, j));
+    }
+  }
+  matrix.error = factor * result.error + std::sqrt(kPi) * integrand.light_error();
+  matrix.exit_energy = factor * result.values[options.controlled_count];
+  matrix.kernel_energy = factor * result.values.back();
+  return matrix;
+}
+
+}  // namespace prt::brdf
