@@ -1,6 +1,7 @@
 """Options: values out of range, and options that would do nothing, are wrong usage; what the common
 ones say."""
 
+import json
 import unittest
 
 from toolbox import BAD_INPUT, QUAD_OBJ, WRONG_USAGE, ToolTest
@@ -26,6 +27,17 @@ class Options(ToolTest):
         for option in (("--transfer", self.quad), ("--draw", "single"), ("--show", "clusters")):
             self.wrong(f"{option[0]}.*excludes|excludes.*{option[0]}", *render, *option,
                        "--reference")
+
+    def test_the_noise_of_the_reference_is_what_inspect_takes(self):
+        picture, noise = self.folder / "a.exr", self.folder / "noise.exr"
+        self.done("prt-render", self.quad, "-o", picture, "--reference", "--samples", 16, "--size",
+                  "32x32", "--antialias", 1, "--background", "none", "--noise-output", noise,
+                  "--report", self.folder / "r")
+        result = self.done("prt-inspect", "--compare", picture, picture, "--noise", noise, "--json")
+        measured = json.loads(result.stdout)["comparison"]["noise_relative_rmse"]
+        told = self.load(self.folder / "r")["relative_standard_error"]
+        self.assertGreater(told, 0)
+        self.assertAlmostEqual(measured / told, 1, 4)
 
     def test_options_of_transfer(self):
         transfer = ("prt-transfer", self.quad, "-o", self.folder / "a.transfer.exr", "--rays", 16)
