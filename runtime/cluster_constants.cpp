@@ -5,20 +5,30 @@
 
 namespace prt::runtime {
 
+std::vector<std::uint32_t> first_constants(const cpca::Encoding& encoding) {
+  std::vector<std::uint32_t> first{0};
+  for (int k = 0; k < encoding.cluster_count; ++k)
+    first.push_back(first.back() + static_cast<std::uint32_t>(encoding.component_count_of(k)) + 1);
+  return first;
+}
+
 ClusterConstants::ClusterConstants(const gltf::PrecomputedTransfer& transfer)
     : band_count_(transfer.band_count), channel_count_(transfer.channel_count) {
   const cpca::Encoding& encoding = transfer.encoding;
-  const auto components = static_cast<std::size_t>(encoding.component_count);
   const auto dimension = static_cast<std::size_t>(encoding.dimension);
-  row_count_ = static_cast<std::size_t>(encoding.cluster_count) * (components + 1);
+  const std::vector<std::uint32_t> first = first_constants(encoding);
+  row_count_ = first.back();
   transposed_.resize(row_count_ * dimension);
   sums_.resize(3 * row_count_);
   constants_.resize(row_count_, Vec4(0.0f));
-  for (std::size_t row = 0; row < row_count_; ++row) {
-    const std::size_t cluster = row / (components + 1), i = row % (components + 1);
-    const float* source = i == 0 ? &encoding.means[cluster * dimension]
-                                 : &encoding.bases[(cluster * components + i - 1) * dimension];
+  const auto copy = [&](std::span<const float> source, std::size_t row) {
     for (std::size_t k = 0; k < dimension; ++k) transposed_[k * row_count_ + row] = source[k];
+  };
+  for (int cluster = 0; cluster < encoding.cluster_count; ++cluster) {
+    std::size_t row = first[static_cast<std::size_t>(cluster)];
+    copy(encoding.mean(cluster), row);
+    for (int i = 0; i < encoding.component_count_of(cluster); ++i)
+      copy(encoding.basis(cluster, i), ++row);
   }
 }
 

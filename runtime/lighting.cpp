@@ -1,5 +1,7 @@
 #include "runtime/lighting.h"
 
+#include <ImathMatrixAlgo.h>
+
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -70,6 +72,12 @@ sh::Light default_light(int band_count) {
       light.coefficients[color][k] += lamp.coefficients[color][k];
   light.source = "prtkit's lamp";
   return light;
+}
+
+Matrix4 turned(const Matrix4& rotation, const Vec3& axis, float radians) {
+  Matrix4 turn;
+  turn.setAxisAngle(axis, radians);
+  return Imath::extractQuat(rotation * turn).normalized().toMatrix44();
 }
 
 Matrix4 light_rotation(float degrees) {

@@ -29,6 +29,10 @@ Lighting lighting_from(sh::Light light);
 /// When none is given: a warm lamp on the left, above and in front, and a dim sky.
 sh::Light default_light(int band_count);
 
+/// A rotation turned on about an axis through the origin, and made a rotation again: products of
+/// many rotations drift.
+Matrix4 turned(const Matrix4& rotation, const Vec3& axis, float radians);
+
 /// Turns light about +Y, counter-clockwise seen from above.
 Matrix4 light_rotation(float degrees);
 

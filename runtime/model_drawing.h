@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,11 +14,11 @@
 
 namespace prt::runtime {
 
-/// Compressed transfer; both ways give the same pixels.
+/// Compressed transfer, adaptive or not; both ways give the same pixels.
 class CompressedDrawing {
  public:
   /// The model has compressed transfer. Throws Error (failed) when it has more components than this
-  /// OpenGL has vertex attributes for.
+  /// OpenGL has vertex attributes (not needed by adaptive transfer) or uniforms for.
   CompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
 
   /// What ClusterConstants::evaluate returned for the light.
@@ -25,18 +26,22 @@ class CompressedDrawing {
 
   /// All clusters in one draw call; constants are fetched for each vertex.
   void draw_single(const Matrix4& clip_from_world) const;
-  /// The loop of [Sloan03] §6.2: depth first, then cluster by cluster, constants in uniform
-  /// registers, added up by blending. Where two triangles coincide exactly, both are added.
+  /// The loop of [Sloan03] §6.2: depth first, then supercluster by supercluster, constants in
+  /// uniform registers, added up by blending. Where two triangles coincide exactly, both are added.
   void draw_clusters(const Matrix4& clip_from_world) const;
 
  private:
+  gl::VertexArray make_array(const gl::Buffer& positions, const gl::Buffer& indices) const;
+  void bind_weights(const gl::Program& program) const;
+
   std::size_t index_count_;
-  int component_count_;
-  gl::Buffer clusters_, weights_, chunk_indices_;
+  int weight_vector_count_;  // attributes of weights; 0 when they are in the table
+  gl::Buffer constants_of_vertices_, weights_, weight_ranges_, chunk_indices_;
   gl::VertexArray single_array_, chunk_array_;
   std::vector<std::size_t> chunk_offsets_;
+  std::vector<std::uint32_t> chunk_constants_;  // the first of each chunk, and how many there are
   gl::Program single_program_, cluster_program_, depth_program_;
-  gl::Table constant_table_;
+  gl::Table constant_table_, weight_table_;
   std::vector<Vec4> constants_;
 };
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "cpca/superclusters.h"
 #include "gl/context.h"
 #include "runtime/cluster_constants.h"
 #include "runtime/model_drawing.h"
@@ -45,11 +46,16 @@ gl::Texture make_environment_texture(const image::Image& map) {
   return gl::Texture(gl::Format::rgba32f, map.width, map.height, rgba.data());
 }
 
-std::vector<Vec3> cluster_colors(const cpca::Encoding& encoding) {
+std::vector<Vec3> label_colors(const std::vector<std::uint32_t>& labels) {
   std::vector<Vec3> colors;
-  for (const std::uint32_t cluster : encoding.cluster_of_point)
-    colors.push_back(cluster_color(cluster));
+  for (const std::uint32_t label : labels) colors.push_back(cluster_color(label));
   return colors;
+}
+
+/// Without superclusters, each cluster is one.
+std::vector<std::uint32_t> supercluster_labels(const gltf::PrecomputedTransfer& transfer) {
+  if (transfer.first_clusters.empty()) return transfer.encoding.cluster_of_point;
+  return cpca::superclusters_of_points(transfer.encoding, transfer.first_clusters);
 }
 
 std::vector<Vec3> error_colors(const Model& model) {
@@ -69,8 +75,11 @@ struct Renderer::Drawings {
     if (model.transfer) {
       constants.emplace(*model.transfer);
       compressed.emplace(model, positions, indices);
-      clusters.emplace(cluster_colors(model.transfer->encoding), model.indices.size(), positions,
-                       indices);
+      const std::size_t index_count = model.indices.size();
+      clusters.emplace(label_colors(model.transfer->encoding.cluster_of_point), index_count,
+                       positions, indices);
+      superclusters.emplace(label_colors(supercluster_labels(*model.transfer)), index_count,
+                            positions, indices);
     }
     if (model.signal) uncompressed.emplace(model, positions, indices);
     if (model.transfer && model.signal)
@@ -79,6 +88,7 @@ struct Renderer::Drawings {
 
   void draw(const View& view, const Matrix4& clip_from_world) const {
     if (view.show == Show::clusters) return clusters->draw(clip_from_world);
+    if (view.show == Show::superclusters) return superclusters->draw(clip_from_world);
     if (view.show == Show::error) return error->draw(clip_from_world);
     if (view.draw == Draw::uncompressed) return uncompressed->draw(clip_from_world);
     if (view.draw == Draw::clusters) return compressed->draw_clusters(clip_from_world);
@@ -90,12 +100,14 @@ struct Renderer::Drawings {
   std::optional<ClusterConstants> constants;
   std::optional<CompressedDrawing> compressed;
   std::optional<UncompressedDrawing> uncompressed;
-  std::optional<ColorDrawing> clusters, error;
+  std::optional<ColorDrawing> clusters, superclusters, error;
 };
 
 Renderer::Renderer()
-    : composite_program_("fullscreen.vert", "composite.frag"),
-      float_format_(gl::limits().float32_targets ? gl::Format::rgba32f : gl::Format::rgba16f) {
+    : Renderer(gl::limits().float32_targets ? gl::Format::rgba32f : gl::Format::rgba16f) {}
+
+Renderer::Renderer(gl::Format float_format)
+    : composite_program_("fullscreen.vert", "composite.frag"), float_format_(float_format) {
   const float black[4] = {0.0f, 0.0f, 0.0f, 1.0f};
   environment_ = gl::Texture(gl::Format::rgba32f, 1, 1, black);
 }
@@ -128,7 +140,7 @@ void Renderer::update_light() {
 
 bool Renderer::can_draw(Draw draw, Show show) const {
   if (!drawings_) return false;
-  if (show == Show::clusters) return drawings_->clusters.has_value();
+  if (show == Show::clusters || show == Show::superclusters) return drawings_->clusters.has_value();
   if (show == Show::error) return drawings_->error.has_value();
   return draw == Draw::uncompressed ? drawings_->uncompressed.has_value()
                                     : drawings_->compressed.has_value();

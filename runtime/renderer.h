@@ -16,8 +16,8 @@ namespace prt::runtime {
 
 /// How transfer is drawn: compressed in one call, compressed by clusters, or uncompressed.
 enum class Draw { single, clusters, uncompressed };
-/// What is shown: exit radiance, or two false-colour pictures of the compression.
-enum class Show { radiance, clusters, error };
+/// What is shown: exit radiance, or false-colour pictures of the compression.
+enum class Show { radiance, clusters, superclusters, error };
 enum class Background { none, color, environment };
 
 struct View {
@@ -34,7 +34,9 @@ constexpr float kErrorScale = 0.1f;
 
 class Renderer {
  public:
+  /// Draws to textures of this format; the default is the finest that the context can blend.
   Renderer();
+  explicit Renderer(gl::Format float_format);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

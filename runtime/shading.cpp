@@ -31,7 +31,7 @@ Vec3 vertex_radiance(const gltf::PrecomputedTransfer& transfer, std::size_t vert
   const auto component_count = static_cast<std::size_t>(encoding.component_count);
   const float* const weights = encoding.weights.data() + vertex * component_count;
   Vec3 radiance = dot_light(encoding.mean(cluster), transfer.channel_count, light);
-  for (int i = 0; i < encoding.component_count; ++i)
+  for (int i = 0; i < encoding.component_count_of(cluster); ++i)
     radiance += weights[i] * dot_light(encoding.basis(cluster, i), transfer.channel_count, light);
   return radiance;
 }

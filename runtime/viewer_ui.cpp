@@ -21,6 +21,7 @@ constexpr Mode kModes[] = {{"Compressed, one draw", Draw::single, Show::radiance
                            {"Compressed, by clusters", Draw::clusters, Show::radiance},
                            {"Uncompressed", Draw::uncompressed, Show::radiance},
                            {"Cluster colours", Draw::single, Show::clusters},
+                           {"Supercluster colours", Draw::single, Show::superclusters},
                            {"Error heat map", Draw::single, Show::error}};
 
 bool is_current(const Mode& mode, const View& view) {
@@ -46,10 +47,8 @@ void Viewer::apply_input() {
 void Viewer::turn_light(float dx, float dy) {
   if (dx == 0.0f && dy == 0.0f) return;
   const float radians_per_pixel = std::numbers::pi_v<float> / ImGui::GetIO().DisplaySize.y;
-  Matrix4 about_up, about_right;
-  about_up.setAxisAngle(Vec3(0, 1, 0), dx * radians_per_pixel);
-  about_right.setAxisAngle(view_.camera.axes().right, dy * radians_per_pixel);
-  set_light_rotation(world_from_light_ * about_up * about_right);
+  const Matrix4 about_up = turned(world_from_light_, Vec3(0, 1, 0), dx * radians_per_pixel);
+  set_light_rotation(turned(about_up, view_.camera.axes().right, dy * radians_per_pixel));
 }
 
 void Viewer::draw_panel() {

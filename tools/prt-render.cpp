@@ -20,8 +20,10 @@ using prt::runtime::Show;
 
 const std::map<std::string, Draw> kDraws = {
     {"single", Draw::single}, {"clusters", Draw::clusters}, {"uncompressed", Draw::uncompressed}};
-const std::map<std::string, Show> kShows = {
-    {"radiance", Show::radiance}, {"clusters", Show::clusters}, {"error", Show::error}};
+const std::map<std::string, Show> kShows = {{"radiance", Show::radiance},
+                                            {"clusters", Show::clusters},
+                                            {"superclusters", Show::superclusters},
+                                            {"error", Show::error}};
 const std::map<std::string, Background> kBackgrounds = {{"environment", Background::environment},
                                                         {"color", Background::color},
                                                         {"none", Background::none}};

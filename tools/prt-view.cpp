@@ -18,6 +18,7 @@ const std::map<std::string, std::pair<Draw, Show>> kModes = {
     {"clusters", {Draw::clusters, Show::radiance}},
     {"uncompressed", {Draw::uncompressed, Show::radiance}},
     {"cluster-colors", {Draw::single, Show::clusters}},
+    {"supercluster-colors", {Draw::single, Show::superclusters}},
     {"error", {Draw::single, Show::error}}};
 
 void add_options(CLI::App& app, ViewerOptions& options) {

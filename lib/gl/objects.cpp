@@ -49,11 +49,11 @@ void VertexArray::set_floats(unsigned int location, const Buffer& buffer, int co
                         byte_offset(offset));
 }
 
-void VertexArray::set_uints(unsigned int location, const Buffer& buffer) {
+void VertexArray::set_uints(unsigned int location, const Buffer& buffer, int component_count) {
   bind();
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
   glEnableVertexAttribArray(location);
-  glVertexAttribIPointer(location, 1, GL_UNSIGNED_INT, 0, nullptr);
+  glVertexAttribIPointer(location, component_count, GL_UNSIGNED_INT, 0, nullptr);
 }
 
 void VertexArray::set_indices(const Buffer& buffer) {
@@ -71,10 +71,8 @@ Texture::Texture(Format format, int width, int height, const float* pixels)
                  {.found = std::to_string(width) + "x" + std::to_string(height),
                   .expected = "at most " + std::to_string(limit) + " pixels a side"});
   glBindTexture(GL_TEXTURE_2D, name());
-  const bool bytes = format == Format::rgba8;
-  const GLint internal = bytes ? GL_RGBA8 : format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F;
-  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, GL_RGBA,
-               bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, pixels);
+  const GLint internal = format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F;
+  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, GL_RGBA, GL_FLOAT, pixels);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   check_errors("storing a texture");

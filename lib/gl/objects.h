@@ -57,8 +57,8 @@ class VertexArray {
   /// `component_count` floats for each vertex, `stride` and `offset` in bytes.
   void set_floats(unsigned int location, const Buffer& buffer, int component_count,
                   std::size_t stride, std::size_t offset);
-  /// One std::uint32_t for each vertex, tightly packed.
-  void set_uints(unsigned int location, const Buffer& buffer);
+  /// `component_count` of std::uint32_t for each vertex, tightly packed.
+  void set_uints(unsigned int location, const Buffer& buffer, int component_count = 1);
   void set_indices(const Buffer& buffer);
   void bind() const;
 
@@ -66,7 +66,7 @@ class VertexArray {
   Name<delete_vertex_array> name_;
 };
 
-enum class Format { rgba8, rgba16f, rgba32f };
+enum class Format { rgba16f, rgba32f };
 
 /// One level, no filtering (shaders fetch texels and interpolate where they must).
 class Texture {

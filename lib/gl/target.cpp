@@ -11,9 +11,7 @@ namespace prt::gl {
 
 namespace {
 
-GLenum sized_format(Format format) {
-  return format == Format::rgba8 ? GL_RGBA8 : format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F;
-}
+GLenum sized_format(Format format) { return format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F; }
 
 unsigned int make_renderbuffer(GLenum format, int samples, int width, int height) {
   GLuint name = 0;

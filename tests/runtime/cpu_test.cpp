@@ -10,6 +10,7 @@
 #include "cpca/overdraw.h"
 #include "runtime/cluster_chunks.h"
 #include "runtime/cluster_constants.h"
+#include "runtime/lighting.h"
 #include "runtime/models.h"
 #include "runtime/shading.h"
 
@@ -36,6 +37,31 @@ TEST(ClusterConstants, AreTheDotProductsWithTheLight) {
           EXPECT_NEAR(found[static_cast<std::size_t>(cluster * 9 + i)][color], sum, 1e-5);
         }
   }
+}
+
+TEST(ClusterConstants, OfAdaptiveTransferAreThoseThatClustersHave) {
+  gltf::PrecomputedTransfer transfer = random_adaptive_transfer(10, 3, 3, 20, 4);
+  const std::vector<Vec4> packed = ClusterConstants(transfer).evaluate(test_light(3));
+  const std::vector<std::uint32_t> first = first_constants(transfer.encoding);
+  const std::vector<std::uint32_t> counts = std::move(transfer.encoding.component_counts);
+  transfer.encoding.component_counts = {};
+  const std::vector<Vec4> padded = ClusterConstants(transfer).evaluate(test_light(3));
+  ASSERT_EQ(packed.size(), first.back());
+  for (std::size_t k = 0; k < 20; ++k) {
+    ASSERT_EQ(first[k + 1] - first[k], counts[k] + 1);
+    for (std::size_t i = 0; i <= counts[k]; ++i) EXPECT_EQ(packed[first[k] + i], padded[5 * k + i]);
+  }
+}
+
+TEST(ClusterChunks, AreSuperclustersSplitToFitTheRegisters) {
+  const auto plain = random_transfer(10, 1, 1, 10, 3);  // 4 constants a cluster
+  using Numbers = std::vector<std::uint32_t>;
+  EXPECT_EQ(first_clusters_of_chunks(plain, 100), Numbers({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  const auto grouped = with_superclusters(plain, 6);
+  EXPECT_EQ(first_clusters_of_chunks(grouped, 100), Numbers({0, 6}));
+  EXPECT_EQ(first_clusters_of_chunks(grouped, 16), Numbers({0, 4, 6}));
+  EXPECT_EQ(first_clusters_of_chunks(grouped, 15), Numbers({0, 3, 6, 9}));
+  EXPECT_EQ(first_clusters_of_chunks(grouped, 1), Numbers({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
 TEST(ClusterConstants, LightOfMoreOrFewerBandsIsCutOrPadded) {
@@ -73,6 +99,20 @@ TEST(ClusterChunks, OneClusterIsTheMeshItself) {
   const mesh::TriangleMesh mesh = sphere(6, 8);
   const std::vector<std::uint32_t> zeros(mesh.vertex_count(), 0);
   EXPECT_EQ(make_cluster_chunks(mesh.indices, zeros, 1).indices, mesh.indices);
+}
+
+TEST(Lighting, TurningOnAndOnStaysARotation) {
+  Matrix4 rotation;
+  for (int i = 0; i < 20000; ++i)
+    rotation = turned(rotation, Vec3(0.3f, 1.0f, -0.2f).normalized(), 0.01f);
+  const Matrix4 product = rotation * rotation.transposed();
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(product[i][j], i == j ? 1.0f : 0.0f, 1e-6f);
+  Matrix4 expected;
+  expected.setAxisAngle(Vec3(0, 1, 0), 0.5f);
+  const Matrix4 once = turned(Matrix4(), Vec3(0, 1, 0), 0.5f);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(once[i][j], expected[i][j], 1e-6f);
 }
 
 TEST(Shading, ConvexBodyOfAlbedoOneUnderConstantLightHasThatRadiance) {

@@ -140,6 +140,35 @@ inline gltf::PrecomputedTransfer random_transfer(std::size_t vertex_count, int b
   return transfer;
 }
 
+/// The same as adaptive CPCA has it: clusters of 0 to `component_count` vectors.
+inline gltf::PrecomputedTransfer random_adaptive_transfer(std::size_t vertex_count, int band_count,
+                                                          int channel_count, int cluster_count,
+                                                          int component_count) {
+  gltf::PrecomputedTransfer transfer =
+      random_transfer(vertex_count, band_count, channel_count, cluster_count, component_count);
+  cpca::Encoding& e = transfer.encoding;
+  const auto components = static_cast<std::size_t>(component_count);
+  const auto n = static_cast<std::size_t>(e.dimension);
+  Pcg32 random(5);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(cluster_count); ++k) {
+    const std::uint32_t own = random.below(static_cast<std::uint32_t>(component_count) + 1);
+    e.component_counts.push_back(own);
+    for (std::size_t i = (k * components + own) * n; i < (k + 1) * components * n; ++i)
+      e.bases[i] = 0.0f;
+  }
+  for (std::size_t p = 0; p < vertex_count; ++p)
+    for (std::size_t i = e.component_counts[e.cluster_of_point[p]]; i < components; ++i)
+      e.weights[p * components + i] = 0.0f;
+  return transfer;
+}
+
+/// Superclusters of `size` clusters each, the last smaller.
+inline gltf::PrecomputedTransfer with_superclusters(gltf::PrecomputedTransfer transfer, int size) {
+  for (int k = 0; k < transfer.encoding.cluster_count; k += size)
+    transfer.first_clusters.push_back(static_cast<std::uint32_t>(k));
+  return transfer;
+}
+
 /// Coloured, bright from one side, with something in every band.
 inline sh::Light test_light(int band_count) {
   sh::Light light(band_count);

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "gl/context.h"
 #include "image/environment.h"
+#include "runtime/cluster_constants.h"
 #include "runtime/cpu_pixels.h"
 #include "runtime/models.h"
 #include "runtime/shading.h"
@@ -65,6 +66,63 @@ TEST_P(EveryApi, BothWaysOfDrawingCompressedTransferGiveTheSamePixels) {
     }
 }
 
+TEST_P(EveryApi, SuperclustersLeaveThePixels) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  const Lighting lighting = lighting_from(test_light(3));
+  const auto transfer = random_transfer(scene.vertex_count(), 3, 3, 61, 6);
+  const image::Image expected = render(make_model(scene, transfer, {}), Draw::single, lighting);
+  for (const int size : {1, 7, 61, 1000}) {
+    const Model model = make_model(scene, with_superclusters(transfer, size), {});
+    EXPECT_EQ(largest_difference(expected, render(model, Draw::single, lighting)), 0.0f);
+    EXPECT_LT(largest_difference(expected, render(model, Draw::clusters, lighting)), 1e-3f) << size;
+  }
+}
+
+TEST_P(EveryApi, AdaptiveTransferDrawsAsItsPaddedTwinDoes) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  const Lighting lighting = lighting_from(test_light(3));
+  for (const int component_count : {0, 3, 13}) {
+    auto transfer = with_superclusters(
+        random_adaptive_transfer(scene.vertex_count(), 3, 3, 50, component_count), 9);
+    const Model adaptive = make_model(scene, transfer, {});
+    transfer.encoding.component_counts.clear();
+    const image::Image expected = render(make_model(scene, transfer, {}), Draw::single, lighting);
+    EXPECT_LT(largest_difference(expected, render(adaptive, Draw::single, lighting)), 1e-5f);
+    EXPECT_LT(largest_difference(expected, render(adaptive, Draw::clusters, lighting)), 1e-3f);
+  }
+}
+
+TEST_P(EveryApi, TablesOfMoreThanOneRowAreReadAcrossItsEnds) {
+  // More than 4,096 constants and 3,200 vectors of weights: rows have 2048 elements of four
+  // numbers.
+  const mesh::Scene scene = scene_of({torus(80, 40)});
+  const auto transfer = random_adaptive_transfer(scene.vertex_count(), 2, 3, 800, 9);
+  ASSERT_GT(first_constants(transfer.encoding).back(), 2 * 2048u);
+  const Model model = make_model(scene, transfer, {});
+  const Lighting lighting = lighting_from(test_light(2));
+  EXPECT_LT(largest_difference(render(model, Draw::single, lighting),
+                               render(model, Draw::clusters, lighting)),
+            1e-3f);
+}
+
+TEST_P(EveryApi, HalfFloatTargetsAddUpClustersToWithinAStepOfAPicture) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  auto transfer = random_transfer(scene.vertex_count(), 3, 3, 40, 4);
+  for (float& value : transfer.encoding.means) value *= 0.3f;  // radiance of about 1
+  for (float& value : transfer.encoding.bases) value *= 0.3f;
+  const Model model = make_model(scene, transfer, {});
+  const Lighting lighting = lighting_from(test_light(3));
+  const image::Image expected = render(model, Draw::single, lighting);
+  Renderer half(gl::Format::rgba16f);
+  half.set_model(model);
+  half.set_lighting(lighting);
+  View view = view_of(model);
+  for (const Draw draw : {Draw::single, Draw::clusters}) {
+    view.draw = draw;
+    EXPECT_LT(largest_difference(expected, half.render(view, kWidth, kHeight, 1)), 1.0f / 255.0f);
+  }
+}
+
 TEST_P(EveryApi, FullRankCompressionDrawsLikeUncompressed) {
   const mesh::Scene scene = scene_of({sphere(24, 32), torus(48, 24)});
   for (const std::vector<Vec3>& albedo :
@@ -82,14 +140,12 @@ TEST_P(EveryApi, FullRankCompressionDrawsLikeUncompressed) {
 TEST_P(EveryApi, PixelsAgreeWithTheCpuTwin) {
   const mesh::Scene scene = scene_of({torus(80, 40)});
   const signal::TransferSignal signal = unshadowed(scene, 5, {{2, 1, 0}, {0, 1, 2}, {1, 2, 0}});
-  gltf::PrecomputedTransfer transfer = random_transfer(scene.vertex_count(), 5, 3, 30, 6);
-  // Weights that vary slowly, so that a pixel's exact place in its triangle matters little.
-  for (std::size_t p = 0; p < scene.vertex_count(); ++p)
-    for (std::size_t i = 0; i < 6; ++i)
-      transfer.encoding.weights[6 * p + i] =
-          0.3f * std::sin(scene.primitives[0].mesh.positions[p].x * static_cast<float>(i));
-  std::fill(transfer.encoding.cluster_of_point.begin(), transfer.encoding.cluster_of_point.end(),
-            17u);
+  // Clusters meet in nearly every triangle, and differ little: a pixel's exact place in its
+  // triangle is not the rasteriser's to the last bit.
+  gltf::PrecomputedTransfer transfer =
+      with_superclusters(random_adaptive_transfer(scene.vertex_count(), 5, 3, 300, 6), 25);
+  for (float& value : transfer.encoding.means) value *= 0.1f;
+  for (float& value : transfer.encoding.bases) value *= 0.1f;
   const Model model = make_model(scene, transfer, signal);
   const sh::Light light = test_light(5);
   for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed}) {
@@ -103,7 +159,7 @@ TEST_P(EveryApi, PixelsAgreeWithTheCpuTwin) {
         Vec3 expected;
         if (!cpu.radiance(x, y, expected)) continue;
         ++compared_count;
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], expected[c], 2e-3f);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], expected[c], 1.0f / 255.0f);
         EXPECT_EQ(image.at(x, y)[3], 1.0f);
       }
     EXPECT_GT(compared_count, 500u);
@@ -200,6 +256,11 @@ TEST_P(EveryApi, FalseColorsAreThoseOfTheCpu) {
   };
   EXPECT_LT((middle(exact, Show::error) - heat_color(0)).length(), 1e-3f);
   EXPECT_LT((middle(exact, Show::clusters) - cluster_color(0)).length(), 1e-5f);
+  gltf::PrecomputedTransfer grouped = with_superclusters(full_rank(signal, 12), 4);
+  for (std::uint32_t& cluster : grouped.encoding.cluster_of_point) cluster = 6;
+  const Model group = make_model(scene, grouped, signal);
+  EXPECT_LT((middle(group, Show::clusters) - cluster_color(6)).length(), 1e-5f);
+  EXPECT_LT((middle(group, Show::superclusters) - cluster_color(1)).length(), 1e-5f);
   for (float& weight : transfer.encoding.weights) weight += 1.0f;
   EXPECT_LT((middle(make_model(scene, transfer, signal), Show::error) - heat_color(1)).length(),
             1e-5f);
