@@ -7,7 +7,7 @@
 #include "cli/tool.h"
 #include "core/log.h"
 #include "cpca/encoder.h"
-#include "cpca/figures.h"
+#include "cpca/report.h"
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "signal/transfer_signal.h"
@@ -35,53 +35,32 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--components", options.component_count, "PCA vectors of each cluster")
       ->check(CLI::Range(0, 8192))
       ->group(group);
-  app.add_option("--method", arguments.method,
-                 "static: PCA in each cluster; vq: no vectors; pca: one cluster")
-      ->check(CLI::IsMember({"static", "vq", "pca"}))
+  app.add_option(
+         "--method", arguments.method,
+         "iterative: clusters by approximation error; static: by distance to the mean; vq: no "
+         "vectors; pca: one cluster")
+      ->check(CLI::IsMember({"iterative", "static", "vq", "pca"}))
       ->group(group);
-  app.add_option("--iterations", options.iterations, "Iterations of clustering, at most")
+  app.add_option("--iterations", options.iterations,
+                 "Iterations, at most; iterative: for each number of vectors")
       ->check(CLI::Range(1, 10000))
       ->group(group);
 }
 
-nlohmann::ordered_json to_json(const cpca::Figures& figures) {
-  return {{"squared_error", figures.squared_error},
-          {"signal_energy", figures.signal_energy},
-          {"relative_rmse", figures.relative_rmse()},
-          {"max_point_error", figures.max_point_error}};
+cpca::Encoded encode(const signal::TransferSignal& signal, const Arguments& arguments) {
+  auto* const encoder =
+      arguments.method == "iterative" ? cpca::encode_iterative : cpca::encode_static;
+  return encoder(signal.values, signal.dimension(), arguments.options);
 }
 
-/// Figures in total, at the top level, and of each primitive under "meshes".
-void report_errors(const signal::TransferSignal& signal, const cpca::Encoding& encoding,
-                   nlohmann::ordered_json& json) {
-  const std::vector<double> errors = cpca::point_errors(encoding, signal.values);
-  const auto dimension = static_cast<std::size_t>(signal.dimension());
-  json.update(to_json(cpca::summarize(errors, signal.values)));
-  std::size_t first = 0;
-  for (const auto& block : signal.blocks) {
-    nlohmann::ordered_json entry{{"name", block.name}, {"vertex_count", block.vertex_count}};
-    entry.update(to_json(cpca::summarize(
-        std::span(errors).subspan(first, block.vertex_count),
-        std::span(signal.values).subspan(first * dimension, block.vertex_count * dimension))));
-    json["meshes"].push_back(std::move(entry));
-    first += block.vertex_count;
-  }
-}
-
-void report_encoding(const cpca::Encoded& encoded, nlohmann::ordered_json& json) {
-  const cpca::Encoding& encoding = encoded.encoding;
-  const auto signal_bytes =
-      encoding.point_count * static_cast<std::size_t>(encoding.dimension) * sizeof(float);
-  json["point_count"] = encoding.point_count;
-  json["dimension"] = encoding.dimension;
-  json["cluster_count"] = encoding.cluster_count;
-  json["component_count"] = encoding.component_count;
-  json["iterations"] = encoded.iterations;
-  json["signal_bytes"] = signal_bytes;
-  json["compressed_bytes"] = cpca::storage_bytes(encoding);
-  json["compression_ratio"] =
-      static_cast<double>(signal_bytes) / static_cast<double>(cpca::storage_bytes(encoding));
-  json["blas"] = linalg::blas_description();
+void report_encoding(const cpca::Encoded& encoded, const signal::TransferSignal& signal,
+                     Report& report) {
+  for (const cpca::Stage& stage : encoded.stages) report.add_stage(stage.name, stage.seconds);
+  const StageTimer timer(report, "errors");
+  std::vector<cpca::Group> groups;
+  for (const auto& block : signal.blocks) groups.push_back({block.name, block.vertex_count});
+  report.json().update(cpca::to_json(encoded, signal.values, groups));
+  report.json()["blas"] = linalg::blas_description();
 }
 
 struct Input {
@@ -107,13 +86,8 @@ void compress(Arguments arguments, const cli::CommonOptions& common, Report& rep
                    {{arguments.output, {".glb"}, arguments.model}}, common);
   Input input = load(arguments, report);
   const signal::TransferSignal& signal = input.signal;
-  cpca::Encoded encoded = cpca::encode_static(signal.values, signal.dimension(), options);
-  for (const cpca::Stage& stage : encoded.stages) report.add_stage(stage.name, stage.seconds);
-  report_encoding(encoded, report.json());
-  {
-    const StageTimer timer(report, "errors");
-    report_errors(signal, encoded.encoding, report.json());
-  }
+  cpca::Encoded encoded = encode(signal, arguments);
+  report_encoding(encoded, signal, report);
   const StageTimer save(report, "save");
   input.document.set_precomputed_transfer({.band_count = signal.band_count,
                                            .row_count = signal.row_count,

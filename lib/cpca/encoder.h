@@ -14,7 +14,7 @@ namespace prt::cpca {
 struct Options {
   int cluster_count = 256;  ///< m_c
   int component_count = 8;  ///< n', 0 to the dimension
-  int iterations = 20;      ///< of vector quantisation, at most
+  int iterations = 20;      ///< of vector quantisation, or for each number of vectors, at most
   std::uint64_t seed = 1;
 };
 
@@ -23,9 +23,17 @@ struct Stage {
   double seconds;
 };
 
+/// What iterative encoders did with one number of vectors.
+struct Level {
+  int component_count = 0;
+  std::vector<double> errors;  ///< SE after each iteration
+};
+
 struct Encoded {
   Encoding encoding;
-  int iterations = 0;  ///< done
+  int iterations = 0;         ///< done
+  std::vector<Level> levels;  ///< of iterative encoders
+  double flops = 0.0;         ///< of the products of points with means and vectors
   std::vector<Stage> stages;
 };
 
@@ -41,5 +49,11 @@ void check_signal(std::span<const float> signal, int dimension, const Options& o
 /// threads. A cluster with fewer independent points than components gets zero vectors and zero
 /// weights for the rest. Checks options and signal as above.
 Encoded encode_static(std::span<const float> signal, int dimension, const Options& options);
+
+/// Iterative CPCA [Sloan03] §4.2: points go to the cluster of least approximation error, and each
+/// cluster's subspace follows its points, `iterations` times or until nothing moves, for no
+/// vectors, then one, up to component_count. From the same seeds as encode_static; likewise
+/// otherwise.
+Encoded encode_iterative(std::span<const float> signal, int dimension, const Options& options);
 
 }  // namespace prt::cpca

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "cpca/encoder.h"
 
 namespace prt::cpca {
 
@@ -35,6 +36,36 @@ inline std::vector<float> make_signal(std::size_t point_count, std::size_t dimen
     }
   }
   return signal;
+}
+
+/// Signals of nine coefficients that the options below approximate exactly.
+struct DegenerateCase {
+  const char* name;
+  std::vector<float> signal;
+  Options options;
+};
+
+inline std::vector<DegenerateCase> degenerate_cases() {
+  constexpr std::size_t n = 9;
+  const std::vector<float> constant(50 * n, 0.1f);
+  std::vector<float> rank_one, duplicated;
+  const auto direction = random_values(n, 1);
+  for (std::size_t p = 0; p < 50; ++p) {
+    for (std::size_t i = 0; i < n; ++i) {
+      rank_one.push_back(0.3f + static_cast<float>(p) * direction[i]);
+      duplicated.push_back(static_cast<float>(p % 3) * direction[i]);
+    }
+  }
+  const std::vector<float> one_point(constant.begin(), constant.begin() + n);
+  return {{"constant", constant, {.cluster_count = 1, .component_count = 2}},
+          {"constant", constant, {.cluster_count = 5, .component_count = 2}},
+          {"constant, a cluster a point", constant, {.cluster_count = 50, .component_count = 0}},
+          {"zero", std::vector<float>(50 * n), {.cluster_count = 3, .component_count = 2}},
+          {"rank one", rank_one, {.cluster_count = 1, .component_count = 1}},
+          {"rank one", rank_one, {.cluster_count = 4, .component_count = 3}},
+          {"duplicated", duplicated, {.cluster_count = 3, .component_count = 0}},
+          {"duplicated", duplicated, {.cluster_count = 20, .component_count = 2}},
+          {"one point", one_point, {.cluster_count = 1, .component_count = 3}}};
 }
 
 }  // namespace prt::cpca

@@ -174,32 +174,12 @@ TEST(StaticEncoder, MoreComponentsAndMoreClustersLeaveLessError) {
 }
 
 TEST(StaticEncoder, DegenerateSignalsAreExact) {
-  constexpr std::size_t n = 9;
-  const std::vector<float> constant(50 * n, 0.1f);
-  std::vector<float> rank_one, duplicated;
-  const auto direction = random_values(n, 1);
-  for (std::size_t p = 0; p < 50; ++p) {
-    for (std::size_t i = 0; i < n; ++i) {
-      rank_one.push_back(0.3f + static_cast<float>(p) * direction[i]);
-      duplicated.push_back(static_cast<float>(p % 3) * direction[i]);
-    }
-  }
-  const struct {
-    const std::vector<float>& signal;
-    Options options;
-  } cases[] = {{constant, {.cluster_count = 1, .component_count = 2}},
-               {constant, {.cluster_count = 5, .component_count = 2}},
-               {constant, {.cluster_count = 50, .component_count = 0}},
-               {rank_one, {.cluster_count = 1, .component_count = 1}},
-               {rank_one, {.cluster_count = 4, .component_count = 3}},
-               {duplicated, {.cluster_count = 3, .component_count = 0}},
-               {duplicated, {.cluster_count = 20, .component_count = 2}}};
-  for (const auto& test : cases) {
-    const Encoded encoded = encode_static(test.signal, n, test.options);
-    EXPECT_LT(figures_of(encoded, test.signal).relative_rmse(), 1e-6);
+  for (const DegenerateCase& test : degenerate_cases()) {
+    const Encoded encoded = encode_static(test.signal, 9, test.options);
+    EXPECT_LT(figures_of(encoded, test.signal).relative_rmse(), 1e-6) << test.name;
     expect_orthonormal_or_zero(encoded.encoding);
-    for (float value : encoded.encoding.weights) EXPECT_TRUE(std::isfinite(value));
-    for (float value : encoded.encoding.means) EXPECT_TRUE(std::isfinite(value));
+    for (float value : encoded.encoding.weights) EXPECT_TRUE(std::isfinite(value)) << test.name;
+    for (float value : encoded.encoding.means) EXPECT_TRUE(std::isfinite(value)) << test.name;
   }
 }
 

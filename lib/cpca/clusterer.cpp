@@ -1,0 +1,168 @@
+#include "cpca/clusterer.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "cpca/subspace_kernels.h"
+#include "cpca/subspace_update.h"
+
+namespace prt::cpca {
+
+namespace {
+
+constexpr std::size_t kPointBlock = 256;
+/// Clusters tried between full passes.
+constexpr std::size_t kNeighbours = 32;
+
+}  // namespace
+
+Clusterer::Clusterer(const Rows& rows, std::size_t dimension, std::span<const float> means,
+                     std::size_t capacity)
+    : rows_(rows),
+      subspaces_(means.size() / rows.stride, padded(rows.stride), capacity),
+      labels_(rows.count),
+      all_clusters_(subspaces_.cluster_count()),
+      errors_(rows.count),
+      neighbour_count_(std::min(kNeighbours, subspaces_.cluster_count())) {
+  set_dimension(dimension);
+  for (std::size_t k = 0; k < subspaces_.cluster_count(); ++k) {
+    std::copy_n(&means[k * rows.stride], rows.stride, subspaces_.mean(k));
+  }
+  std::iota(all_clusters_.begin(), all_clusters_.end(), 0u);
+  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+  neighbours_.resize(subspaces_.cluster_count() * neighbour_count_);
+}
+
+void Clusterer::set_rows(const Rows& rows) {
+  rows_ = rows;
+  subspaces_ = Subspaces(subspaces_.cluster_count(), padded(rows.stride), subspaces_.capacity);
+}
+
+std::vector<Clusterer::Block> Clusterer::make_blocks() const {
+  std::vector<Block> blocks;
+  for (std::size_t k = 0; k < subspaces_.cluster_count(); ++k) {
+    const auto points = sorted_.of(k);
+    for (std::size_t done = 0; done < points.size(); done += kPointBlock) {
+      blocks.push_back({k, points.subspan(done, std::min(kPointBlock, points.size() - done))});
+    }
+  }
+  return blocks;
+}
+
+Clusterer::Pass Clusterer::classify(bool full) {
+  const std::vector<Block> blocks = make_blocks();
+  if (full) {
+    block_neighbours_.assign(blocks.size() * neighbour_count_, 0);
+    block_affinities_.assign(blocks.size() * neighbour_count_, 0.0f);
+  }
+  const std::vector<std::uint32_t> before = labels_;
+  parallel_for(blocks.size(), 1,
+               [&](std::size_t b, std::size_t) { classify_block(blocks[b], full, b); });
+  if (full) merge_neighbours(blocks);
+  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+  fill_empty_clusters();
+  Pass pass;
+  for (std::size_t p = 0; p < labels_.size(); ++p) {
+    pass.error += double{rows_.weight(p)} * double{errors_[p]};
+    pass.moved_count += labels_[p] != before[p];
+  }
+  std::size_t vectors = 0;
+  for (const std::uint32_t used : subspaces_.used) vectors += 1 + used;
+  flops_ += 2.0 * static_cast<double>(labels_.size() * subspaces_.dimension * vectors) *
+            (full ? 1.0
+                  : static_cast<double>(neighbour_count_) /
+                        static_cast<double>(subspaces_.cluster_count()));
+  return pass;
+}
+
+void Clusterer::classify_block(const Block& block, bool full, std::size_t number) {
+  Classification work{.points = block.points, .labels = labels_, .errors = errors_};
+  if (!full) {
+    work.candidates =
+        std::span(neighbours_).subspan(block.cluster * neighbour_count_, neighbour_count_);
+    cpca::classify(rows_, subspaces_, work);
+    return;
+  }
+  std::vector<std::uint32_t> candidates = all_clusters_;
+  std::swap(candidates[0], candidates[block.cluster]);
+  std::vector<float> affinities(candidates.size());
+  work.candidates = candidates;
+  work.affinities = affinities;
+  cpca::classify(rows_, subspaces_, work);
+  std::vector<std::uint32_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(neighbour_count_);
+  std::partial_sort(order.begin(), middle, order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return affinities[a] != affinities[b] ? affinities[a] > affinities[b] : a < b;
+  });
+  for (std::size_t i = 0; i < neighbour_count_; ++i) {
+    block_neighbours_[number * neighbour_count_ + i] = candidates[order[i]];
+    block_affinities_[number * neighbour_count_ + i] = affinities[order[i]];
+  }
+}
+
+void Clusterer::merge_neighbours(std::span<const Block> blocks) {
+  std::vector<float> sums(subspaces_.cluster_count());
+  std::vector<std::uint32_t> found;
+  for (std::size_t b = 0; b < blocks.size();) {
+    const std::size_t k = blocks[b].cluster;
+    found.assign(1, static_cast<std::uint32_t>(k));
+    sums[k] = 1e30f;  // first
+    for (; b < blocks.size() && blocks[b].cluster == k; ++b) {
+      for (std::size_t i = b * neighbour_count_; i < (b + 1) * neighbour_count_; ++i) {
+        const std::uint32_t other = block_neighbours_[i];
+        if (sums[other] == 0.0f) found.push_back(other);
+        sums[other] += block_affinities_[i];
+      }
+    }
+    std::sort(found.begin(), found.end(), [&](std::uint32_t x, std::uint32_t y) {
+      return sums[x] != sums[y] ? sums[x] > sums[y] : x < y;
+    });
+    for (const std::uint32_t other : found) sums[other] = 0.0f;
+    for (std::size_t i = 0; i < neighbour_count_; ++i) {
+      neighbours_[k * neighbour_count_ + i] = found[std::min(i, found.size() - 1)];
+    }
+  }
+}
+
+void Clusterer::fill_empty_clusters() {
+  std::vector<std::size_t> left(subspaces_.cluster_count());
+  bool any = false;
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    left[k] = sorted_.of(k).size();
+    any = any || left[k] == 0;
+  }
+  if (!any) return;
+  std::vector<std::uint32_t> worst(labels_.size());
+  std::iota(worst.begin(), worst.end(), 0u);
+  std::sort(worst.begin(), worst.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return errors_[a] != errors_[b] ? errors_[a] > errors_[b] : a < b;
+  });
+  auto next = worst.begin();
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (left[k] != 0) continue;
+    while (next != worst.end() && left[labels_[*next]] <= 1) ++next;
+    if (next == worst.end() || errors_[*next] == 0.0f) break;
+    --left[labels_[*next]];
+    labels_[*next] = static_cast<std::uint32_t>(k);
+    subspaces_.used[k] = subspaces_.held[k] = 0;
+    std::copy_n(rows_.row(*next), subspaces_.dimension, subspaces_.mean(k));
+    errors_[*next++] = 0.0f;
+    // Its neighbours are those of every cluster until a full pass.
+    for (std::size_t i = 0; i < neighbour_count_; ++i) {
+      neighbours_[k * neighbour_count_ + i] = static_cast<std::uint32_t>(k);
+    }
+  }
+  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+}
+
+void Clusterer::update(std::uint32_t used, std::uint32_t held, int steps) {
+  parallel_for(subspaces_.cluster_count(), 1, [&](std::size_t k, std::size_t) {
+    update_subspace(rows_, sorted_.of(k), errors_, subspaces_, k,
+                    {.used = used, .held = held, .steps = steps});
+  });
+  flops_ += 4.0 * steps * static_cast<double>(labels_.size() * subspaces_.dimension) * held;
+}
+
+}  // namespace prt::cpca

@@ -1,0 +1,68 @@
+// The generalized LBG algorithm of iterative and adaptive CPCA [Sloan03] §4.2, §4.3: points go to
+// the cluster that approximates them best, then clusters fit their points.
+//
+// Most clusters are nowhere near most points. A full pass measures the error of every point in
+// every cluster and notes which clusters are near the points of each; the passes after it try only
+// those. As a point moves only to where its error is less, the error falls all the same.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cpca/clusters.h"
+#include "cpca/subspaces.h"
+
+namespace prt::cpca {
+
+class Clusterer {
+ public:
+  /// Clusters with these means (cluster × stride of the rows), no vectors, and room for `capacity`;
+  /// every point is in the first.
+  Clusterer(const Rows& rows, std::size_t dimension, std::span<const float> means,
+            std::size_t capacity);
+
+  struct Pass {
+    double error = 0.0;           ///< Σ_p weight_p ‖x_p - x̃_p‖²
+    std::size_t moved_count = 0;  ///< points
+  };
+  /// Every point to the cluster of least error, all clusters tried or only near ones. Clusters that
+  /// run empty take the points that are worst approximated, as long as there is error left.
+  Pass classify(bool full);
+
+  /// Fits every cluster to its points, with `used` vectors of the `held` that it keeps.
+  void update(std::uint32_t used, std::uint32_t held, int steps);
+
+  /// How many coordinates of the rows count. Means and vectors of more are right after update().
+  void set_dimension(std::size_t dimension) { subspaces_.dimension = dimension; }
+  /// The same points in other coordinates. Clusters keep their points and nothing else.
+  void set_rows(const Rows& rows);
+
+  const Subspaces& subspaces() const { return subspaces_; }
+  const std::vector<std::uint32_t>& labels() const { return labels_; }
+  double flops() const { return flops_; }
+
+ private:
+  struct Block {
+    std::size_t cluster;
+    std::span<const std::uint32_t> points;
+  };
+  std::vector<Block> make_blocks() const;
+  void classify_block(const Block& block, bool full, std::size_t number);
+  void merge_neighbours(std::span<const Block> blocks);
+  void fill_empty_clusters();
+
+  Rows rows_;
+  Subspaces subspaces_;
+  std::vector<std::uint32_t> labels_, all_clusters_;
+  std::vector<float> errors_;
+  PointsByCluster sorted_;
+  std::size_t neighbour_count_;
+  std::vector<std::uint32_t> neighbours_;  ///< cluster × neighbour_count_, the cluster itself first
+  /// Of each block of a full pass, its nearest clusters and how near they are.
+  std::vector<std::uint32_t> block_neighbours_;
+  std::vector<float> block_affinities_;
+  double flops_ = 0.0;
+};
+
+}  // namespace prt::cpca

@@ -1,0 +1,56 @@
+// The affine subspaces of all clusters as iterative encoders work on them, and the rows of points
+// that they approximate. Both live in the same coordinates: those of the signal, or its first
+// principal axes (cpca/principal_axes.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace prt::cpca {
+
+/// Points as rows, `stride` floats apart.
+struct Rows {
+  const float* values = nullptr;
+  std::size_t count = 0, stride = 0;
+  /// Of each point in sums of errors, >= 0; empty: 1 each.
+  std::span<const float> weights = {};
+
+  const float* row(std::size_t point) const { return values + point * stride; }
+  float weight(std::size_t point) const { return weights.empty() ? 1.0f : weights[point]; }
+};
+
+/// Rows of vectors are filled up with zeros to a multiple of this.
+constexpr std::size_t kRowLanes = 32;
+
+inline std::size_t padded(std::size_t dimension) {
+  return (dimension + kRowLanes - 1) / kRowLanes * kRowLanes;
+}
+
+struct Subspaces {
+  std::size_t dimension = 0;        ///< coordinates that count; the rest of a row is zero
+  std::size_t stride = 0;           ///< floats of a row, at least padded(dimension)
+  std::size_t capacity = 0;         ///< vectors that a cluster can hold
+  std::vector<float> values;        ///< cluster × (1 + capacity) × stride: mean, then vectors
+  std::vector<std::uint32_t> used;  ///< vectors of each cluster that approximate points
+  std::vector<std::uint32_t> held;  ///< and those that it keeps besides, for later: >= used
+  /// Estimates of the squared singular values of the vectors held: cluster × capacity.
+  std::vector<double> variances;
+
+  Subspaces(std::size_t cluster_count, std::size_t row_stride, std::size_t vector_capacity)
+      : stride(row_stride),
+        capacity(vector_capacity),
+        values(cluster_count * (1 + vector_capacity) * row_stride),
+        used(cluster_count),
+        held(cluster_count),
+        variances(cluster_count * vector_capacity) {}
+
+  std::size_t cluster_count() const { return used.size(); }
+  float* mean(std::size_t k) { return &values[k * (1 + capacity) * stride]; }
+  const float* mean(std::size_t k) const { return &values[k * (1 + capacity) * stride]; }
+  float* vector(std::size_t k, std::size_t i) { return mean(k) + (1 + i) * stride; }
+  const float* vector(std::size_t k, std::size_t i) const { return mean(k) + (1 + i) * stride; }
+};
+
+}  // namespace prt::cpca

@@ -1,0 +1,51 @@
+#include "cpca/working_space.h"
+
+#include <algorithm>
+
+namespace prt::cpca {
+
+namespace {
+
+/// Signals of fewer coefficients are taken as they are.
+constexpr std::size_t kLeastDimension = 64;
+/// Of the error, what may lie outside the coordinates in use where there are more axes, and where
+/// there are none left.
+constexpr double kTail = 0.05, kLastTail = 0.25;
+/// The error of vector quantisation, as a share of the variance, for the first choice.
+constexpr double kFirstError = 0.1;
+
+}  // namespace
+
+WorkingSpace::WorkingSpace(std::span<const float> signal, std::size_t dimension,
+                           std::span<const float> weights)
+    : signal_(signal),
+      signal_dimension_(dimension),
+      rows_{signal.data(), signal.size() / dimension, dimension, weights},
+      dimension_(dimension) {
+  if (dimension < kLeastDimension) return;
+  axes_ = find_principal_axes(signal, dimension, dimension * 15 / 32, weights);
+  rows_.values = axes_.rows.data();
+  rows_.stride = axes_.count();
+  fit_to(kFirstError * axes_.tails[0]);
+}
+
+bool WorkingSpace::fit_to(double error) {
+  if (axes_.tails.empty()) return false;
+  if (axes_.tails.back() > kLastTail * error) {
+    axes_ = {};
+    rows_.values = signal_.data();
+    rows_.stride = dimension_ = signal_dimension_;
+    return true;
+  }
+  std::size_t count = 0;
+  while (count < axes_.count() && axes_.tails[count] > kTail * error) ++count;
+  dimension_ = std::max<std::size_t>(count, 1);
+  return false;
+}
+
+std::vector<float> WorkingSpace::convert(std::span<const float> points) const {
+  if (axes_.tails.empty()) return {points.begin(), points.end()};
+  return to_axes(axes_, points);
+}
+
+}  // namespace prt::cpca

@@ -1,0 +1,37 @@
+// The coordinates that iterative encoders work in: as many principal axes of the signal as matter
+// beside the error that is left, or the signal itself where it has few coefficients or no such
+// axes. Half of the signal in memory at most.
+#pragma once
+
+#include <span>
+
+#include "cpca/principal_axes.h"
+#include "cpca/subspaces.h"
+
+namespace prt::cpca {
+
+class WorkingSpace {
+ public:
+  WorkingSpace(std::span<const float> signal, std::size_t dimension,
+               std::span<const float> weights);
+
+  const Rows& rows() const { return rows_; }
+  std::size_t dimension() const { return dimension_; }
+  /// Σ_p weight_p ‖what the coordinates in use leave out of x_p‖², part of every error.
+  double tail() const { return axes_.tails.empty() ? 0.0 : axes_.tails[dimension_]; }
+
+  /// As many coordinates as an error calls for. True when rows() are others now.
+  bool fit_to(double error);
+
+  /// Points of the signal's coordinates (count × dimension) in those of rows(), stride of rows().
+  std::vector<float> convert(std::span<const float> points) const;
+
+ private:
+  std::span<const float> signal_;
+  std::size_t signal_dimension_;
+  PrincipalAxes axes_;  ///< empty: the signal's own
+  Rows rows_;
+  std::size_t dimension_;
+};
+
+}  // namespace prt::cpca

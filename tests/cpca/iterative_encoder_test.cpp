@@ -1,0 +1,127 @@
+// Iterative CPCA against the plain method, and what [Sloan03] §4.2 promises of it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "cpca/encoder.h"
+#include "cpca/figures.h"
+#include "cpca/plain_iterative.h"
+#include "cpca/signals.h"
+
+namespace prt::cpca {
+namespace {
+
+double error_of(const Encoded& encoded, const std::vector<float>& signal) {
+  return summarize(point_errors(encoded.encoding, signal), signal).squared_error;
+}
+
+/// Errors are what is left of squares in single precision.
+constexpr double kRounding = 1e-5;
+
+struct Case {
+  std::size_t point_count, dimension, group_count;
+  Options options;
+};
+
+// Fewer coefficients than are worth axes of their own; too many dimensions for half as many axes;
+// few enough.
+const Case kCases[] = {
+    {2000, 25, 6, {.cluster_count = 6, .component_count = 4, .iterations = 15}},
+    {1000, 80, 12, {.cluster_count = 12, .component_count = 3, .iterations = 15}},
+    {1200, 128, 4, {.cluster_count = 6, .component_count = 6, .iterations = 15}},
+};
+
+// So many that between full passes only near ones are tried; the same three kinds.
+const Case kManyClusters[] = {
+    {3000, 25, 12, {.cluster_count = 60, .component_count = 4, .iterations = 15}},
+    {2000, 80, 20, {.cluster_count = 50, .component_count = 3, .iterations = 15}},
+    {2000, 128, 4, {.cluster_count = 40, .component_count = 3, .iterations = 15}},
+};
+
+TEST(IterativeEncoder, ErrorNeverRises) {
+  for (const Case& test : kManyClusters) {
+    const auto signal = make_signal(test.point_count, test.dimension, test.group_count);
+    const Encoded encoded =
+        encode_iterative(signal, static_cast<int>(test.dimension), test.options);
+    ASSERT_EQ(encoded.levels.size(), test.options.component_count + 1u);
+    double last = std::numeric_limits<double>::infinity();
+    int iterations = 0;
+    for (const Level& level : encoded.levels) {
+      ASSERT_FALSE(level.errors.empty());
+      for (double error : level.errors) {
+        EXPECT_LE(error, last * (1.0 + kRounding)) << level.component_count << " vectors";
+        last = error;
+        ++iterations;
+      }
+    }
+    EXPECT_EQ(encoded.iterations, iterations);
+    EXPECT_GT(iterations, 3 * (test.options.component_count + 1));
+    EXPECT_LE(error_of(encoded, signal), last * (1.0 + kRounding));
+  }
+}
+
+TEST(IterativeEncoder, IsAsGoodAsThePlainMethod) {
+  for (const Case& test : kCases) {
+    const auto signal = make_signal(test.point_count, test.dimension, test.group_count);
+    const Encoded encoded =
+        encode_iterative(signal, static_cast<int>(test.dimension), test.options);
+    PlainIterative plain(signal, test.dimension,
+                         static_cast<std::size_t>(test.options.cluster_count), test.options.seed);
+    const double expected = plain.run(test.options.component_count, test.options.iterations);
+    EXPECT_NEAR(error_of(encoded, signal), expected, 0.005 * expected);
+  }
+}
+
+TEST(IterativeEncoder, IsBetterThanStatic) {
+  for (const Case& test : kManyClusters) {
+    const auto signal = make_signal(test.point_count, test.dimension, test.group_count);
+    const auto n = static_cast<int>(test.dimension);
+    EXPECT_LT(error_of(encode_iterative(signal, n, test.options), signal),
+              0.9 * error_of(encode_static(signal, n, test.options), signal));
+  }
+}
+
+TEST(IterativeEncoder, SameBytesForAnyThreadCountAndTwice) {
+  const auto signal = make_signal(6000, 100, 5);
+  for (int clusters : {1, 50}) {
+    const auto encode = [&](int threads) {
+      set_thread_count(threads);
+      return encode_iterative(signal, 100,
+                              {.cluster_count = clusters, .component_count = 3, .iterations = 4});
+    };
+    const Encoded one = encode(1);
+    for (int threads : {2, 4, 2}) {
+      const Encoded other = encode(threads);
+      EXPECT_EQ(one.encoding.means, other.encoding.means);
+      EXPECT_EQ(one.encoding.bases, other.encoding.bases);
+      EXPECT_EQ(one.encoding.cluster_of_point, other.encoding.cluster_of_point);
+      EXPECT_EQ(one.encoding.weights, other.encoding.weights);
+    }
+    set_thread_count(0);
+  }
+}
+
+TEST(IterativeEncoder, DegenerateSignalsAreExact) {
+  for (const DegenerateCase& test : degenerate_cases()) {
+    const Encoded encoded = encode_iterative(test.signal, 9, test.options);
+    EXPECT_LT(summarize(point_errors(encoded.encoding, test.signal), test.signal).relative_rmse(),
+              1e-6)
+        << test.name;
+    for (float value : encoded.encoding.weights) EXPECT_TRUE(std::isfinite(value)) << test.name;
+    for (float value : encoded.encoding.means) EXPECT_TRUE(std::isfinite(value)) << test.name;
+  }
+}
+
+TEST(IterativeEncoder, RefusesWhatStaticDoes) {
+  auto signal = random_values(40, 1);  // 10 × 4
+  EXPECT_THROW(encode_iterative(signal, 4, {.cluster_count = 11, .component_count = 1}), Error);
+  EXPECT_THROW(encode_iterative(signal, 4, {.cluster_count = 2, .component_count = 5}), Error);
+  signal[30] = std::nanf("");
+  EXPECT_THROW(encode_iterative(signal, 4, {.cluster_count = 2, .component_count = 1}), Error);
+}
+
+}  // namespace
+}  // namespace prt::cpca
