@@ -7,20 +7,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "core/cpu.h"
 #include "core/parallel.h"
-#include "core/random.h"
 #include "cpca/encoder.h"
 #include "cpca/figures.h"
 #include "cpca/nearest_mean.h"
 #include "cpca/quantizer.h"
 #include "cpca/seeding.h"
 #include "linalg/product.h"
+#include "made_signal.h"
 #include "peak.h"
 
 namespace {
@@ -38,26 +37,6 @@ double seconds_of(const Work& work) {
   const auto start = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Like transfer: a few families of points, each with variances that fall off, and noise.
-std::vector<float> make_signal(const Problem& problem) {
-  constexpr std::size_t kFamilies = 4, kDirections = 12;
-  Pcg32 random(3);
-  std::vector<float> directions(kFamilies * kDirections * problem.dimension);
-  for (float& value : directions) value = random.uniform() - 0.5f;
-  std::vector<float> signal(problem.point_count * problem.dimension);
-  for (std::size_t p = 0; p < problem.point_count; ++p) {
-    float* row = &signal[p * problem.dimension];
-    const std::size_t family = random.below(kFamilies);
-    for (std::size_t i = 0; i < problem.dimension; ++i) row[i] = 0.02f * random.uniform();
-    for (std::size_t d = 0; d < kDirections; ++d) {
-      const float weight = (random.uniform() - 0.5f) * std::pow(0.7f, static_cast<float>(d));
-      const float* direction = &directions[(family * kDirections + d) * problem.dimension];
-      for (std::size_t i = 0; i < problem.dimension; ++i) row[i] += weight * direction[i];
-    }
-  }
-  return signal;
 }
 
 double median(std::vector<double> values) {
@@ -87,7 +66,7 @@ void classify(const Problem& problem, const std::vector<float>& signal,
 void run(const Problem& problem) {
   constexpr int kIterations = 20, kRepetitions = 5;
   const auto& [point_count, n, cluster_count] = problem;
-  const std::vector<float> signal = make_signal(problem);
+  const std::vector<float> signal = bench::make_signal(point_count, n);
   std::vector<float> means, scores(point_count * cluster_count);
   std::vector<std::uint32_t> labels(point_count);
   std::vector<double> blas, peak, classification, clustering, seeding;

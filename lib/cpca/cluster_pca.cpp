@@ -21,16 +21,19 @@ constexpr std::size_t kLargeCluster = 8192;
 /// Eigenvalues below this share of the largest are rounding.
 constexpr double kRankTolerance = 1e-12;
 
-/// Rows x_p - mean of some points.
+/// Rows x_p - mean of some points, times the root of their weight if there are weights.
 template <class T>
 std::vector<T> gather(std::span<const float> signal, std::span<const std::uint32_t> points,
-                      std::span<const float> mean) {
+                      std::span<const float> mean, std::span<const float> point_weights = {}) {
   const std::size_t n = mean.size();
   std::vector<T> rows(points.size() * n);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const float* x = &signal[points[p] * n];
     T* row = &rows[p * n];
     for (std::size_t i = 0; i < n; ++i) row[i] = static_cast<T>(x[i]) - static_cast<T>(mean[i]);
+    if (point_weights.empty()) continue;
+    const T root = std::sqrt(static_cast<T>(point_weights[points[p]]));
+    for (std::size_t i = 0; i < n; ++i) row[i] *= root;
   }
   return rows;
 }
@@ -38,13 +41,14 @@ std::vector<T> gather(std::span<const float> signal, std::span<const std::uint32
 /// Upper triangle, in blocks, of C^T C; blocks of points are added in order.
 std::vector<double> inner_product(std::span<const float> signal,
                                   std::span<const std::uint32_t> points,
-                                  std::span<const float> mean) {
+                                  std::span<const float> mean,
+                                  std::span<const float> point_weights) {
   const std::size_t n = mean.size();
   std::vector<double> product(n * n);
   const std::size_t column_block = points.size() >= kLargeCluster ? kColumnBlock : n;
   for (std::size_t done = 0; done < points.size(); done += kPointBlock) {
     const auto block = points.subspan(done, std::min(kPointBlock, points.size() - done));
-    const std::vector<double> rows = gather<double>(signal, block, mean);
+    const std::vector<double> rows = gather<double>(signal, block, mean, point_weights);
     parallel_for(n, column_block, [&](std::size_t begin, std::size_t end) {
       linalg::gemm(1.0, {&rows[begin], block.size(), end - begin, n}, Transpose::yes,
                    {&rows[begin], block.size(), n - begin, n}, Transpose::no, 1.0,
@@ -65,9 +69,10 @@ std::size_t rank(std::span<const double> eigenvalues) {
 /// Right singular vectors of C, row by row, from either normal form.
 std::vector<double> components_of_inner(std::span<const float> signal,
                                         std::span<const std::uint32_t> points,
-                                        std::span<const float> mean, std::size_t count) {
+                                        std::span<const float> mean,
+                                        std::span<const float> point_weights, std::size_t count) {
   const std::size_t n = mean.size();
-  std::vector<double> matrix = inner_product(signal, points, mean);
+  std::vector<double> matrix = inner_product(signal, points, mean, point_weights);
   auto pairs = linalg::largest_eigenpairs(linalg::MatrixD{matrix.data(), n, n}, count);
   pairs.vectors.resize(rank(pairs.values) * n);
   return std::move(pairs.vectors);
@@ -75,9 +80,10 @@ std::vector<double> components_of_inner(std::span<const float> signal,
 
 std::vector<double> components_of_outer(std::span<const float> signal,
                                         std::span<const std::uint32_t> points,
-                                        std::span<const float> mean, std::size_t count) {
+                                        std::span<const float> mean,
+                                        std::span<const float> point_weights, std::size_t count) {
   const std::size_t n = mean.size(), m = points.size();
-  const std::vector<double> rows = gather<double>(signal, points, mean);
+  const std::vector<double> rows = gather<double>(signal, points, mean, point_weights);
   std::vector<double> matrix(m * m);
   linalg::gemm(1.0, {rows.data(), m, n}, Transpose::no, {rows.data(), m, n}, Transpose::yes, 0.0,
                {matrix.data(), m, m});
@@ -113,7 +119,8 @@ void orthonormalize(std::vector<double>& vectors, std::size_t n) {
 }  // namespace
 
 void find_components(std::span<const float> signal, std::span<const std::uint32_t> points,
-                     const Subspace& subspace, NormalForm form) {
+                     const Subspace& subspace, std::span<const float> point_weights,
+                     NormalForm form) {
   const std::size_t n = subspace.mean.size();
   std::fill(subspace.basis.begin(), subspace.basis.end(), 0.0f);
   const std::size_t count = std::min({subspace.basis.size() / n, n, points.size()});
@@ -121,9 +128,8 @@ void find_components(std::span<const float> signal, std::span<const std::uint32_
   if (form == NormalForm::smaller) {
     form = points.size() >= n ? NormalForm::inner : NormalForm::outer;
   }
-  std::vector<double> vectors = form == NormalForm::inner
-                                    ? components_of_inner(signal, points, subspace.mean, count)
-                                    : components_of_outer(signal, points, subspace.mean, count);
+  auto* const components = form == NormalForm::inner ? components_of_inner : components_of_outer;
+  std::vector<double> vectors = components(signal, points, subspace.mean, point_weights, count);
   orthonormalize(vectors, n);
   std::transform(vectors.begin(), vectors.end(), subspace.basis.begin(),
                  [](double value) { return static_cast<float>(value); });

@@ -24,8 +24,10 @@ enum class NormalForm {
 /// variance first. Those beyond the rank of the points are zero vectors. The sign is such that the
 /// component of greatest magnitude is positive. Sums are in double: single precision would lose
 /// components whose singular values are below 3e-4 of the largest.
+/// `point_weights`, of all points of the signal or empty, weight the points' squares.
 void find_components(std::span<const float> signal, std::span<const std::uint32_t> points,
-                     const Subspace& subspace, NormalForm form = NormalForm::smaller);
+                     const Subspace& subspace, std::span<const float> point_weights = {},
+                     NormalForm form = NormalForm::smaller);
 
 /// Weights of `points` in the subspace, (x_p - mean)·basis_i, into rows of `weights`, which is
 /// (all points of the signal) × component_count.

@@ -39,6 +39,10 @@ void Clusterer::set_rows(const Rows& rows) {
   subspaces_ = Subspaces(subspaces_.cluster_count(), padded(rows.stride), subspaces_.capacity);
 }
 
+void Clusterer::set_used(std::span<const std::uint32_t> used) {
+  std::copy(used.begin(), used.end(), subspaces_.used.begin());
+}
+
 std::vector<Clusterer::Block> Clusterer::make_blocks() const {
   std::vector<Block> blocks;
   for (std::size_t k = 0; k < subspaces_.cluster_count(); ++k) {
@@ -50,19 +54,22 @@ std::vector<Clusterer::Block> Clusterer::make_blocks() const {
   return blocks;
 }
 
-Clusterer::Pass Clusterer::classify(bool full) {
+Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
   const std::vector<Block> blocks = make_blocks();
   if (full) {
     block_neighbours_.assign(blocks.size() * neighbour_count_, 0);
     block_affinities_.assign(blocks.size() * neighbour_count_, 0.0f);
   }
   const std::vector<std::uint32_t> before = labels_;
-  parallel_for(blocks.size(), 1,
-               [&](std::size_t b, std::size_t) { classify_block(blocks[b], full, b); });
+  std::vector<double> errors_before(blocks.size());
+  parallel_for(blocks.size(), 1, [&](std::size_t b, std::size_t) {
+    errors_before[b] = classify_block(blocks[b], full, vector_cost, b);
+  });
   if (full) merge_neighbours(blocks);
   sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
   fill_empty_clusters();
   Pass pass;
+  for (const double error : errors_before) pass.error_before += error;
   for (std::size_t p = 0; p < labels_.size(); ++p) {
     pass.error += double{rows_.weight(p)} * double{errors_[p]};
     pass.moved_count += labels_[p] != before[p];
@@ -76,20 +83,25 @@ Clusterer::Pass Clusterer::classify(bool full) {
   return pass;
 }
 
-void Clusterer::classify_block(const Block& block, bool full, std::size_t number) {
-  Classification work{.points = block.points, .labels = labels_, .errors = errors_};
-  if (!full) {
-    work.candidates =
-        std::span(neighbours_).subspan(block.cluster * neighbour_count_, neighbour_count_);
-    cpca::classify(rows_, subspaces_, work);
-    return;
+double Clusterer::classify_block(const Block& block, bool full, float vector_cost,
+                                 std::size_t number) {
+  const auto near =
+      std::span(neighbours_).subspan(block.cluster * neighbour_count_, neighbour_count_);
+  std::vector<std::uint32_t> candidates =
+      full ? all_clusters_ : std::vector<std::uint32_t>(near.begin(), near.end());
+  if (full) std::swap(candidates[0], candidates[block.cluster]);
+  std::vector<float> affinities(full ? candidates.size() : 0), penalties;
+  for (const std::uint32_t k : candidates) {
+    penalties.push_back(vector_cost * static_cast<float>(subspaces_.used[k]));
   }
-  std::vector<std::uint32_t> candidates = all_clusters_;
-  std::swap(candidates[0], candidates[block.cluster]);
-  std::vector<float> affinities(candidates.size());
-  work.candidates = candidates;
-  work.affinities = affinities;
-  cpca::classify(rows_, subspaces_, work);
+  const double error_before = cpca::classify(rows_, subspaces_,
+                                             {.points = block.points,
+                                              .candidates = candidates,
+                                              .penalties = penalties,
+                                              .labels = labels_,
+                                              .errors = errors_,
+                                              .affinities = affinities});
+  if (!full) return error_before;
   std::vector<std::uint32_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(neighbour_count_);
@@ -100,6 +112,7 @@ void Clusterer::classify_block(const Block& block, bool full, std::size_t number
     block_neighbours_[number * neighbour_count_ + i] = candidates[order[i]];
     block_affinities_[number * neighbour_count_ + i] = affinities[order[i]];
   }
+  return error_before;
 }
 
 void Clusterer::merge_neighbours(std::span<const Block> blocks) {
@@ -157,10 +170,10 @@ void Clusterer::fill_empty_clusters() {
   sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
 }
 
-void Clusterer::update(std::uint32_t used, std::uint32_t held, int steps) {
+void Clusterer::update(std::span<const std::uint32_t> used, std::uint32_t held, int steps) {
   parallel_for(subspaces_.cluster_count(), 1, [&](std::size_t k, std::size_t) {
     update_subspace(rows_, sorted_.of(k), errors_, subspaces_, k,
-                    {.used = used, .held = held, .steps = steps});
+                    {.used = used[k], .held = held, .steps = steps});
   });
   flops_ += 4.0 * steps * static_cast<double>(labels_.size() * subspaces_.dimension) * held;
 }

@@ -23,22 +23,28 @@ class Clusterer {
             std::size_t capacity);
 
   struct Pass {
-    double error = 0.0;           ///< Σ_p weight_p ‖x_p - x̃_p‖²
+    double error_before = 0.0;  ///< Σ_p weight_p ‖x_p - x̃_p‖² with points where they were,
+    double error = 0.0;         ///< and where they are now
     std::size_t moved_count = 0;  ///< points
   };
   /// Every point to the cluster of least error, all clusters tried or only near ones. Clusters that
   /// run empty take the points that are worst approximated, as long as there is error left.
-  Pass classify(bool full);
+  /// With a vector_cost, what is least is the error plus that for each vector of the cluster.
+  Pass classify(bool full, float vector_cost = 0.0f);
 
-  /// Fits every cluster to its points, with `used` vectors of the `held` that it keeps.
-  void update(std::uint32_t used, std::uint32_t held, int steps);
+  /// Fits every cluster to its points, with as many vectors as `used` says, of the `held` >= used
+  /// that it keeps.
+  void update(std::span<const std::uint32_t> used, std::uint32_t held, int steps);
 
+  /// As many vectors of each cluster count, of those that it holds.
+  void set_used(std::span<const std::uint32_t> used);
   /// How many coordinates of the rows count. Means and vectors of more are right after update().
   void set_dimension(std::size_t dimension) { subspaces_.dimension = dimension; }
   /// The same points in other coordinates. Clusters keep their points and nothing else.
   void set_rows(const Rows& rows);
 
   const Subspaces& subspaces() const { return subspaces_; }
+  const PointsByCluster& points() const { return sorted_; }
   const std::vector<std::uint32_t>& labels() const { return labels_; }
   double flops() const { return flops_; }
 
@@ -48,7 +54,7 @@ class Clusterer {
     std::span<const std::uint32_t> points;
   };
   std::vector<Block> make_blocks() const;
-  void classify_block(const Block& block, bool full, std::size_t number);
+  double classify_block(const Block& block, bool full, float vector_cost, std::size_t number);
   void merge_neighbours(std::span<const Block> blocks);
   void fill_empty_clusters();
 

@@ -16,6 +16,10 @@ struct Options {
   int component_count = 8;  ///< n', 0 to the dimension
   int iterations = 20;      ///< of vector quantisation, or for each number of vectors, at most
   std::uint64_t seed = 1;
+  int max_component_count = 0;  ///< of a cluster, adaptive; 0: twice component_count
+  /// Of each point, finite and >= 0, such as the area around a vertex: errors are weighted with it.
+  /// Empty: 1 each.
+  std::span<const float> point_weights = {};
 };
 
 struct Stage {
@@ -55,5 +59,10 @@ Encoded encode_static(std::span<const float> signal, int dimension, const Option
 /// vectors, then one, up to component_count. From the same seeds as encode_static; likewise
 /// otherwise.
 Encoded encode_iterative(std::span<const float> signal, int dimension, const Options& options);
+
+/// Adaptive CPCA [Sloan03] §4.3: from the result of encode_iterative, vectors go to the clusters
+/// where they save most error for the weights that they cost, Σ_k m_k n'_k <= m_p component_count,
+/// up to max_component_count each, and points are classified again, `iterations` times.
+Encoded encode_adaptive(std::span<const float> signal, int dimension, const Options& options);
 
 }  // namespace prt::cpca

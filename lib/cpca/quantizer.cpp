@@ -21,11 +21,14 @@ constexpr std::uint32_t kNone = ~0u;
 /// so that only their rows are read again.
 class Quantizer {
  public:
-  Quantizer(std::span<const float> signal, std::size_t dimension, std::vector<float> means)
+  Quantizer(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
+            std::span<const float> point_weights)
       : signal_(signal),
+        point_weights_(point_weights),
         dimension_(dimension),
         cluster_count_(means.size() / dimension),
         sums_(means.size()),
+        weights_(cluster_count_),
         counts_(cluster_count_),
         old_labels_(signal.size() / dimension, kNone) {
     result_.means = std::move(means);
@@ -89,7 +92,9 @@ class Quantizer {
     double* sum = &sums_[cluster * dimension_];
     for (std::uint32_t point : points) {
       const float* x = &signal_[point * dimension_];
-      for (std::size_t i = 0; i < dimension_; ++i) sum[i] += sign * double{x[i]};
+      const double weight = sign * (point_weights_.empty() ? 1.0 : double{point_weights_[point]});
+      weights_[cluster] += weight;
+      for (std::size_t i = 0; i < dimension_; ++i) sum[i] += weight * double{x[i]};
     }
   }
 
@@ -123,19 +128,20 @@ class Quantizer {
   void update_means() {
     parallel_for(cluster_count_, 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        if (counts_[k] == 0) continue;
-        const auto count = static_cast<double>(counts_[k]);
+        if (counts_[k] == 0) weights_[k] = 0.0;  // without what rounding left
+        if (weights_[k] <= 0.0) continue;
         for (std::size_t i = k * dimension_; i < (k + 1) * dimension_; ++i) {
-          result_.means[i] = static_cast<float>(sums_[i] / count);
+          result_.means[i] = static_cast<float>(sums_[i] / weights_[k]);
         }
       }
     });
   }
 
-  std::span<const float> signal_;
+  std::span<const float> signal_, point_weights_;
   std::size_t dimension_, cluster_count_;
   std::vector<float> origin_;
   std::vector<double> sums_;         // cluster_count × dimension
+  std::vector<double> weights_;      // of all points in each cluster
   std::vector<std::size_t> counts_;  // points in each cluster
   std::vector<std::uint32_t> old_labels_;
   Clustering result_;
@@ -144,9 +150,9 @@ class Quantizer {
 }  // namespace
 
 Clustering quantize(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
-                    int iterations) {
+                    int iterations, std::span<const float> point_weights) {
   assert(iterations >= 1 && !means.empty() && signal.size() >= means.size());
-  return Quantizer(signal, dimension, std::move(means)).run(iterations);
+  return Quantizer(signal, dimension, std::move(means), point_weights).run(iterations);
 }
 
 }  // namespace prt::cpca

@@ -20,7 +20,9 @@ struct Clustering {
 /// moves. A cluster that runs empty takes the point that is worst approximated; clusters stay empty
 /// only when every point is its mean. Points that are as near to one mean as to another go to the
 /// lower. Preconditions: `signal` is finite; at least one iteration.
+/// `point_weights` of the points in the means, >= 0, or empty; the mean of points that all weigh
+/// nothing stays.
 Clustering quantize(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
-                    int iterations);
+                    int iterations, std::span<const float> point_weights = {});
 
 }  // namespace prt::cpca

@@ -19,12 +19,13 @@ Encoded encode_static(std::span<const float> signal, int dimension, const Option
   std::vector<float> means =
       seed_means(signal, n, static_cast<std::size_t>(options.cluster_count), options.seed);
   clock.finish("seeding");
-  Clustering clustering = quantize(signal, n, std::move(means), options.iterations);
+  Clustering clustering =
+      quantize(signal, n, std::move(means), options.iterations, options.point_weights);
   encoded.encoding.means = std::move(clustering.means);
   encoded.encoding.cluster_of_point = std::move(clustering.labels);
   encoded.iterations = clustering.iterations;
   clock.finish("clustering");
-  fit_components(signal, encoded.encoding);
+  fit_components(signal, options.point_weights, encoded.encoding);
   clock.finish("components");
   return encoded;
 }

@@ -147,11 +147,12 @@ struct Best {
 constexpr float kRounding = 1e-6f;
 
 template <class T>
-[[gnu::always_inline]] inline void compare(const float* errors, float penalty,
+[[gnu::always_inline]] inline void compare(const float* errors, float penalty, const float* scales,
                                            std::size_t candidate, Best<T>& best) {
   const auto* error = reinterpret_cast<const typename T::Floats*>(errors);
+  const auto* scale = reinterpret_cast<const typename T::Floats*>(scales);
   for (int half = 0; half < 2; ++half) {
-    const auto cost = error[half] + penalty;
+    const auto cost = error[half] + penalty * scale[half];
     const auto better = cost < best.cost[half];
     best.cost[half] = better ? cost : best.cost[half];
     best.error[half] = better ? error[half] : best.error[half];
@@ -164,11 +165,12 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline void find_errors(const Subspaces& subspaces,
                                                const Classification& work, const float* offsets,
-                                               const float* panel, float* products, float* errors,
-                                               Best<T>& best) {
+                                               const float* panel, const float* scales,
+                                               float* products, float* errors, Best<T>& best) {
   using Floats = typename T::Floats;
   const std::size_t n = subspaces.dimension;
   const auto* y = reinterpret_cast<const Floats*>(panel);
+  const auto* scale = reinterpret_cast<const Floats*>(scales);
   Floats square[2] = {}, own[2] = {};
   for (std::size_t d = 0; d < n; ++d) {
     square[0] += y[2 * d] * y[2 * d];
@@ -190,14 +192,14 @@ template <class T>
       error[half] = sum > 0.0f ? sum : Floats{};
     }
     offsets += 1 + count;
-    const float penalty = work.penalties.empty() ? 0.0f : work.penalties[c];
+    const float penalty = work.penalties[c];
     if (c > 0) {
-      compare<T>(errors, penalty, c, best);
+      compare<T>(errors, penalty, scales, c, best);
       continue;
     }
     for (int half = 0; half < 2; ++half) {
       best.error[half] = error[half];
-      best.cost[half] = error[half] + penalty - kRounding * square[half];
+      best.cost[half] = error[half] + penalty * scale[half] - kRounding * square[half];
       best.candidate[half] = typename T::Ints{};
     }
   }
@@ -225,32 +227,40 @@ template <class T>
 }
 
 template <class T>
-[[gnu::always_inline]] inline void classify_all(const Rows& rows, const Subspaces& subspaces,
-                                                const Classification& work) {
+[[gnu::always_inline]] inline double classify_all(const Rows& rows, const Subspaces& subspaces,
+                                                  const Classification& work) {
   const std::size_t n = subspaces.dimension;
   std::size_t offset_count = 0, most = 0;
   for (const std::uint32_t k : work.candidates) {
     offset_count += 1 + subspaces.used[k];
     most = std::max<std::size_t>(most, 1 + subspaces.used[k]);
   }
-  Buffer offsets(offset_count), panel(n * T::kPanel), products(most * T::kPanel),
+  Buffer offsets(offset_count), panel(n * T::kPanel), scales(T::kPanel), products(most * T::kPanel),
       errors(work.candidates.size() * T::kPanel);
   find_offsets<T>(subspaces, work.candidates, offsets.get());
+  double error_before = 0.0;
   for (std::size_t done = 0; done < work.points.size(); done += T::kPanel) {
     const auto points =
         work.points.subspan(done, std::min<std::size_t>(T::kPanel, work.points.size() - done));
     Best<T> best;
     transpose<T>(rows, subspaces.mean(work.candidates[0]), n, points, panel.get());
-    find_errors<T>(subspaces, work, offsets.get(), panel.get(), products.get(), errors.get(), best);
+    for (std::size_t p = 0; p < T::kPanel; ++p) {
+      const float weight = rows.weight(points[std::min(p, points.size() - 1)]);
+      scales.get()[p] = weight > 0.0f ? 1.0f / weight : 0.0f;
+    }
+    find_errors<T>(subspaces, work, offsets.get(), panel.get(), scales.get(), products.get(),
+                   errors.get(), best);
     const auto* candidate = reinterpret_cast<const std::int32_t*>(best.candidate);
     const auto* error = reinterpret_cast<const float*>(best.error);
     for (std::size_t p = 0; p < points.size(); ++p) {
       work.labels[points[p]] = work.candidates[static_cast<std::size_t>(candidate[p])];
       work.errors[points[p]] = error[p];
+      error_before += double{rows.weight(points[p])} * double{errors.get()[p]};
     }
     if (!work.affinities.empty())
       add_affinities<T>(errors.get(), best, points.size(), work.affinities);
   }
+  return error_before;
 }
 
 constexpr std::size_t kBlock = 256;
@@ -306,16 +316,16 @@ template <class T>
   }
 }
 
-[[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]] void classify_avx512(
+[[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]] double classify_avx512(
     const Rows& rows, const Subspaces& subspaces, const Classification& work) {
-  classify_all<TileAvx512>(rows, subspaces, work);
+  return classify_all<TileAvx512>(rows, subspaces, work);
 }
-[[gnu::target("avx2,fma")]] void classify_avx2(const Rows& rows, const Subspaces& subspaces,
-                                               const Classification& work) {
-  classify_all<TileAvx2>(rows, subspaces, work);
+[[gnu::target("avx2,fma")]] double classify_avx2(const Rows& rows, const Subspaces& subspaces,
+                                                 const Classification& work) {
+  return classify_all<TileAvx2>(rows, subspaces, work);
 }
-void classify_baseline(const Rows& rows, const Subspaces& subspaces, const Classification& work) {
-  classify_all<TileBaseline>(rows, subspaces, work);
+double classify_baseline(const Rows& rows, const Subspaces& subspaces, const Classification& work) {
+  return classify_all<TileBaseline>(rows, subspaces, work);
 }
 
 [[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]] void multiply_avx512(
@@ -348,12 +358,12 @@ void add_baseline(const Rows& rows, std::span<const std::uint32_t> points, std::
 
 }  // namespace
 
-void classify(const Rows& rows, const Subspaces& subspaces, const Classification& classification,
-              SimdLevel level) {
+double classify(const Rows& rows, const Subspaces& subspaces, const Classification& classification,
+                SimdLevel level) {
   auto* kernel = level == SimdLevel::avx512 ? classify_avx512
                  : level == SimdLevel::avx2 ? classify_avx2
                                             : classify_baseline;
-  kernel(rows, subspaces, classification);
+  return kernel(rows, subspaces, classification);
 }
 
 void multiply_by_covariance(const Rows& rows, const Subspaces& subspaces,

@@ -15,23 +15,22 @@ namespace prt::cpca {
 /// Points of one cluster, and the clusters that they may go to.
 struct Classification {
   std::span<const std::uint32_t> points;
-  std::span<const std::uint32_t> candidates = {};  ///< the first is the cluster they are in
-  /// Out, by number of the point: cluster of least error ‖x - x̃‖² and that error. A point leaves
-  /// its cluster only for one that is better by more than rounding.
+  std::span<const std::uint32_t> candidates;  ///< the first is the cluster they are in
+  std::span<const float> penalties;           ///< of each, compared with weighted errors
+  /// Out, by number of the point: the best cluster and the error ‖x - x̃‖² in it. A point leaves its
+  /// cluster only for one that is better by more than rounding.
   std::span<std::uint32_t> labels;
   std::span<float> errors;
   /// Out unless empty: for each candidate the sum over points of (least error / error there)²: how
   /// likely points are to move there.
   std::span<float> affinities = {};
-  /// Unless empty, what is added to the error in each cluster before comparing.
-  std::span<const float> penalties = {};
 };
 
 /// By ‖x - x̃‖² = ‖y‖² - 2 y·d + ‖d‖² - Σ_i (y·b_i - d·b_i)² ([Sloan03] §4.2), where y is relative
 /// to the mean of the cluster that the point is in, and d the mean of the other relative to that:
-/// what cancels is as small as can be.
-void classify(const Rows& rows, const Subspaces& subspaces, const Classification& classification,
-              SimdLevel level = simd_level());
+/// what cancels is as small as can be. Returns Σ weight ‖x - x̃‖² in the cluster they are in.
+double classify(const Rows& rows, const Subspaces& subspaces, const Classification& classification,
+                SimdLevel level = simd_level());
 
 /// Some points of one cluster.
 struct ClusterPoints {

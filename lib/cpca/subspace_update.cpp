@@ -165,7 +165,8 @@ void update_subspace(const Rows& rows, std::span<const std::uint32_t> points,
     std::vector<std::uint32_t> worst(points.begin(), points.end());
     const auto middle = worst.begin() + std::min<std::ptrdiff_t>(most - held, std::ssize(worst));
     std::partial_sort(worst.begin(), middle, worst.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return errors[a] != errors[b] ? errors[a] > errors[b] : a < b;
+      const float x = rows.weight(a) * errors[a], y = rows.weight(b) * errors[b];
+      return x != y ? x > y : a < b;
     });
     for (auto point = worst.begin(); point != middle; ++point) update.add(*point);
   }

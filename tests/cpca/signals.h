@@ -38,6 +38,18 @@ inline std::vector<float> make_signal(std::size_t point_count, std::size_t dimen
   return signal;
 }
 
+/// Four such signals of falling strength after each other: some clusters need more vectors.
+inline std::vector<float> make_uneven_signal(std::size_t point_count, std::size_t dimension,
+                                             std::size_t group_count) {
+  std::vector<float> signal;
+  for (std::uint64_t part = 0; part < 4; ++part) {
+    for (float value : make_signal(point_count / 4, dimension, group_count, 100 * part)) {
+      signal.push_back(value / static_cast<float>(1 + part * part));
+    }
+  }
+  return signal;
+}
+
 /// Signals of nine coefficients that the options below approximate exactly.
 struct DegenerateCase {
   const char* name;

@@ -106,8 +106,8 @@ TEST(ClusterPca, BothNormalFormsGiveTheSameVectors) {
       mean[i % n] += signal[i] / static_cast<float>(point_count);
     }
     std::vector<float> inner(count * n), outer(count * n);
-    find_components(signal, sorted.of(0), {mean, inner}, NormalForm::inner);
-    find_components(signal, sorted.of(0), {mean, outer}, NormalForm::outer);
+    find_components(signal, sorted.of(0), {mean, inner}, {}, NormalForm::inner);
+    find_components(signal, sorted.of(0), {mean, outer}, {}, NormalForm::outer);
     for (std::size_t i = 0; i < inner.size(); ++i) EXPECT_NEAR(inner[i], outer[i], 1e-5);
     EXPECT_GT(dot(inner, inner), count - 0.001);
   }

@@ -72,20 +72,23 @@ TEST(SubspaceKernels, PointsGoToTheClusterOfLeastError) {
           labels(point_count, ~0u);
       std::iota(points.begin(), points.end(), 0u);
       std::iota(candidates.begin(), candidates.end(), 0u);
-      std::vector<float> errors(point_count), affinities(cluster_count);
-      classify({values.data(), point_count, n}, subspaces,
-               {.points = points,
-                .candidates = candidates,
-                .labels = labels,
-                .errors = errors,
-                .affinities = affinities},
-               level);
+      std::vector<float> errors(point_count), affinities(cluster_count), penalties(cluster_count);
+      const double error_before = classify({values.data(), point_count, n}, subspaces,
+                                           {.points = points,
+                                            .candidates = candidates,
+                                            .penalties = penalties,
+                                            .labels = labels,
+                                            .errors = errors,
+                                            .affinities = affinities},
+                                           level);
       std::vector<double> expected(cluster_count);
+      double expected_before = 0.0;
       for (std::size_t p = 0; p < point_count; ++p) {
         std::vector<double> all;
         for (std::size_t k = 0; k < cluster_count; ++k) {
           all.push_back(error_in(subspaces, k, &values[p * n]));
         }
+        expected_before += all[0];
         const double least = *std::min_element(all.begin(), all.end());
         ASSERT_LT(labels[p], cluster_count);
         EXPECT_NEAR(all[labels[p]], least, 1e-5 * (1.0 + least));
@@ -94,6 +97,7 @@ TEST(SubspaceKernels, PointsGoToTheClusterOfLeastError) {
           expected[k] += std::pow((least + 1e-30) / (all[k] + 1e-30), 2.0);
         }
       }
+      EXPECT_NEAR(error_before, expected_before, 1e-5 * (1.0 + expected_before));
       if (n < 25) continue;  // errors near 0 there have no ratio
       for (std::size_t k = 0; k < cluster_count; ++k) {
         EXPECT_NEAR(affinities[k], expected[k], 1e-3 * expected[k]);
@@ -112,18 +116,18 @@ TEST(SubspaceKernels, PenaltiesDecideButAreNoError) {
   classify({point.data(), 1, n}, subspaces,
            {.points = points,
             .candidates = candidates,
+            .penalties = penalties,
             .labels = labels,
-            .errors = errors,
-            .penalties = penalties});
+            .errors = errors});
   EXPECT_EQ(labels[0], 0u);
   EXPECT_NEAR(errors[0], error_in(subspaces, 0, point.data()), 1e-5);
   penalties[1] = 0.0f;
   classify({point.data(), 1, n}, subspaces,
            {.points = points,
             .candidates = candidates,
+            .penalties = penalties,
             .labels = labels,
-            .errors = errors,
-            .penalties = penalties});
+            .errors = errors});
   EXPECT_EQ(labels[0], 1u);
   EXPECT_NEAR(errors[0], 0.0, 1e-5);
 }

@@ -1,0 +1,39 @@
+// The clusters of iterative CPCA [Sloan03] §4.2 in the making: what encode_iterative finishes and
+// encode_adaptive goes on with.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+#include "cpca/clusterer.h"
+#include "cpca/encoder.h"
+#include "cpca/working_space.h"
+
+namespace prt::cpca {
+
+class IterativeEncoder {
+ public:
+  /// Seeds the clusters, with room for `capacity` vectors each, at least one more than
+  /// options.component_count.
+  IterativeEncoder(std::span<const float> signal, std::size_t dimension, const Options& options,
+                   std::size_t capacity);
+
+  /// Iterates at no vectors, one, up to options.component_count.
+  std::vector<Level> run();
+
+  Clusterer& clusterer() { return clusterer_; }
+  const WorkingSpace& space() const { return space_; }
+
+ private:
+  void update(int count, int steps);
+  void start_level(int count, double error);
+  void run_level(Level& level);
+
+  const Options& options_;
+  WorkingSpace space_;
+  Clusterer clusterer_;
+  Progress progress_;
+};
+
+}  // namespace prt::cpca
