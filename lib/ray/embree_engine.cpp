@@ -80,6 +80,18 @@ void check_device(RTCDevice device) {
   }
 }
 
+/// A packet of rays from one origin, without directions.
+void load_origin(RTCRay16& packet, const Vec3& origin) {
+  std::fill_n(packet.org_x, kWidth, origin.x);
+  std::fill_n(packet.org_y, kWidth, origin.y);
+  std::fill_n(packet.org_z, kWidth, origin.z);
+  std::fill_n(packet.tnear, kWidth, 0.0f);
+  std::fill_n(packet.time, kWidth, 0.0f);
+  std::fill_n(packet.mask, kWidth, 0xffffffffu);
+  std::fill_n(packet.id, kWidth, 0u);
+  std::fill_n(packet.flags, kWidth, 0u);
+}
+
 void load_lane(RTCRay16& packet, std::size_t lane, const Ray& ray) {
   packet.org_x[lane] = ray.origin.x;
   packet.org_y[lane] = ray.origin.y;
@@ -94,6 +106,9 @@ void load_lane(RTCRay16& packet, std::size_t lane, const Ray& ray) {
   packet.id[lane] = 0;
   packet.flags[lane] = 0;
 }
+
+/// Embree marks an occluded ray by tfar = -infinity.
+bool is_occluded(const RTCRay16& packet, std::size_t lane) { return packet.tfar[lane] < 0.0f; }
 
 Hit hit_of_lane(const RTCRayHit16& packet, std::size_t lane) {
   if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return {};
@@ -118,71 +133,64 @@ class EmbreeEngine final : public Engine {
 
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override {
     assert(hits.size() == rays.size());
-    for_each_packet<RTCRayHit16>(
-        rays.size(),
-        [&](RTCRayHit16& packet, std::size_t lane, std::size_t i) {
+    RTCRayHit16 packet;
+    for_each_packet(
+        packet, rays.size(),
+        [&](std::size_t lane, std::size_t i) {
           load_lane(packet.ray, lane, rays[i]);
           packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
         },
         rtcIntersect16,
-        [&](const RTCRayHit16& packet, std::size_t lane, std::size_t i) {
-          hits[i] = hit_of_lane(packet, lane);
-        });
+        [&](std::size_t lane, std::size_t i) { hits[i] = hit_of_lane(packet, lane); });
   }
 
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override {
     assert(occluded.size() == rays.size());
-    find_occluded(
-        rays.size(), [&](std::size_t i) { return rays[i]; }, occluded);
+    RTCRay16 packet;
+    for_each_packet(
+        packet, rays.size(),
+        [&](std::size_t lane, std::size_t i) { load_lane(packet, lane, rays[i]); }, rtcOccluded16,
+        [&](std::size_t lane, std::size_t i) { occluded[i] = is_occluded(packet, lane); });
   }
 
   void occluded_from(const Vec3& origin, const PlanarDirections& directions,
                      std::span<const std::uint32_t> chosen,
                      std::span<std::uint8_t> occluded) const override {
     assert(occluded.size() >= chosen.size());
-    find_occluded(
-        chosen.size(),
-        [&](std::size_t i) {
-          const std::uint32_t d = chosen[i];
-          return Ray{origin, 0.0f, {directions.x[d], directions.y[d], directions.z[d]}};
+    RTCRay16 packet;
+    load_origin(packet, origin);
+    for_each_packet(
+        packet, chosen.size(),
+        [&](std::size_t lane, std::size_t i) {
+          packet.dir_x[lane] = directions.x[chosen[i]];
+          packet.dir_y[lane] = directions.y[chosen[i]];
+          packet.dir_z[lane] = directions.z[chosen[i]];
+          packet.tfar[lane] = std::numeric_limits<float>::infinity();
         },
-        occluded);
+        rtcOccluded16,
+        [&](std::size_t lane, std::size_t i) { occluded[i] = is_occluded(packet, lane); });
   }
 
  private:
-  template <class MakeRay>
-  void find_occluded(std::size_t count, const MakeRay& make_ray,
-                     std::span<std::uint8_t> occluded) const {
-    for_each_packet<RTCRay16>(
-        count,
-        [&](RTCRay16& packet, std::size_t lane, std::size_t i) {
-          load_lane(packet, lane, make_ray(i));
-        },
-        rtcOccluded16,
-        [&](const RTCRay16& packet, std::size_t lane, std::size_t i) {
-          occluded[i] = packet.tfar[lane] < 0.0f;  // Embree sets it to -infinity
-        });
-  }
-
-  /// Rays 16 by 16: load(packet, lane, ray number), Embree's call, store(packet, lane, ray number).
+  /// Rays 16 by 16: load(lane, ray number) into the packet, Embree's call, store(lane, ray number).
   /// Lanes past the end repeat the last ray and are switched off.
   template <class Packet, class Load, class Call, class Store>
-  void for_each_packet(std::size_t count, const Load& load, Call call, const Store& store) const {
+  void for_each_packet(Packet& packet, std::size_t count, const Load& load, Call call,
+                       const Store& store) const {
     const FlushDenormals flush;
     // Embree's flag for coherent rays is left out: it costs a fifth even for neighbouring
     // directions from one origin (bench/ray.cpp).
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    alignas(64) Packet packet;
     alignas(64) int valid[kWidth];
     for (std::size_t first = 0; first < count; first += kWidth) {
       const std::size_t used = std::min(kWidth, count - first);
       for (std::size_t lane = 0; lane < kWidth; ++lane) {
         valid[lane] = lane < used ? -1 : 0;
-        load(packet, lane, first + std::min(lane, used - 1));
+        load(lane, first + std::min(lane, used - 1));
       }
       call(valid, scene_.get(), &context, &packet);
-      for (std::size_t lane = 0; lane < used; ++lane) store(packet, lane, first + lane);
+      for (std::size_t lane = 0; lane < used; ++lane) store(lane, first + lane);
     }
   }
 

@@ -59,7 +59,7 @@ std::vector<Node> buried_graph(const SceneIndex& index, const std::vector<std::u
 
 bool is_buried(Hemisphere& hemisphere, float magnitude) {
   const std::size_t blocked_count = hemisphere.blocked().size();
-  if (blocked_count == 0 || hemisphere.visible().size() * kLeakShare > blocked_count) return false;
+  if (blocked_count == 0 || hemisphere.visible_count() * kLeakShare > blocked_count) return false;
   const std::span<const ray::Hit> hits = hemisphere.hits();
   float inside = 0.0f, total = 0.0f;
   for (std::size_t i = 0; i < hits.size(); ++i) {

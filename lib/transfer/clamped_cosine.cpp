@@ -1,24 +1,20 @@
 #include "transfer/clamped_cosine.h"
 
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "sh/basis.h"
+#include "sh/zonal.h"
 
 namespace prt::transfer {
 
-double clamped_cosine_factor(int l) {
-  if (l == 1) return 2.0 * std::numbers::pi / 3.0;
-  if (l % 2 == 1) return 0.0;
-  // A_l = 2 pi (-1)^(l/2-1) / ((l+2)(l-1)) · l! / (2^l (l/2)!²), the last factor term by term.
-  double factor = 2.0 * std::numbers::pi / ((l + 2.0) * (l - 1.0));
-  for (int k = 1; k <= l / 2; ++k) factor *= (2.0 * k - 1.0) / (2.0 * k);
-  return (l / 2) % 2 == 0 ? -factor : factor;
-}
-
 void clamped_cosine(int band_count, const Vec3& normal, std::span<float> coefficients) {
+  const std::vector<double> lobe = sh::cosine_lobe(band_count);
   sh::evaluate(band_count, normal, coefficients);
   for (int l = 0; l < band_count; ++l) {
-    const auto factor = static_cast<float>(clamped_cosine_factor(l));
+    const auto factor = static_cast<float>(std::sqrt(4.0 * std::numbers::pi / (2 * l + 1)) *
+                                           lobe[static_cast<std::size_t>(l)]);
     for (int m = -l; m <= l; ++m) {
       coefficients[static_cast<std::size_t>(sh::coefficient_index(l, m))] *= factor;
     }

@@ -8,11 +8,8 @@
 
 namespace prt::transfer {
 
-/// A_l of [Ramamoorthi, Hanrahan 2001, An Efficient Representation for Irradiance Environment Maps]
-/// eq. 8: pi, 2 pi/3, pi/4, 0, -pi/24, 0, …
-double clamped_cosine_factor(int l);
-
-/// ∫ max(0, n·d) Y_lm(d) dd = A_l Y_lm(n) into band_count² floats.
+/// ∫ max(0, n·d) Y_lm(d) dd = A_l Y_lm(n) into band_count² floats; A_l of [Ramamoorthi, Hanrahan
+/// 2001, An Efficient Representation for Irradiance Environment Maps] eq. 8.
 void clamped_cosine(int band_count, const Vec3& normal, std::span<float> coefficients);
 
 }  // namespace prt::transfer

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "sh/basis.h"
 #include "transfer/buried.h"
 #include "transfer/clamped_cosine.h"
@@ -22,16 +22,6 @@ namespace {
 
 constexpr int kMaxRayCount = 1 << 17;
 constexpr int kMaxBounceRayCount = 1 << 14;  // a block's hits stay under 17 MB
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void check_options(const DiffuseOptions& options) {
   const auto check = [](const char* name, int value, int low, int high) {
@@ -167,8 +157,8 @@ class DiffuseBake {
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
   }
 
-  void store_direct(std::size_t vertex, const Hemisphere& hemisphere,
-                    const std::vector<float>& basis, std::vector<float>& sum) {
+  void store_direct(std::size_t vertex, Hemisphere& hemisphere, const std::vector<float>& basis,
+                    std::vector<float>& sum) {
     const bool closed_form = options_.closed_form;
     std::fill(sum.begin(), sum.end(), 0.0f);
     add_weighted_rows(closed_form ? hemisphere.blocked() : hemisphere.visible(), basis.data(),

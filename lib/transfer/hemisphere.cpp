@@ -10,21 +10,27 @@ Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
   rays_.resize(count);
   occluded_.resize(count);
   blocked_.resize(count);
-  visible_.resize(count);
 }
 
-// Neighbouring directions of one vertex make the fastest packets (bench/ray.cpp). The lists are
-// made without branches, which would be mispredicted: what does not belong is overwritten.
+// Neighbouring directions of one vertex make the fastest packets (bench/ray.cpp). Lists are made
+// without branches, which would be mispredicted: what does not belong is overwritten.
 void Hemisphere::trace(std::size_t vertex) {
-  const std::size_t count = aim(vertex);
+  above_count_ = aim(vertex);
   index_.engine().occluded_from(origin_, {directions_.x, directions_.y, directions_.z},
-                                {above_.data(), count}, occluded_);
-  blocked_count_ = visible_count_ = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    blocked_[blocked_count_] = visible_[visible_count_] = {above_[i], cosines_[above_[i]]};
+                                {above_.data(), above_count_}, occluded_);
+  blocked_count_ = 0;
+  for (std::size_t i = 0; i < above_count_; ++i) {
+    blocked_[blocked_count_] = {above_[i], cosines_[above_[i]]};
     blocked_count_ += occluded_[i];
-    visible_count_ += 1u - occluded_[i];
   }
+}
+
+std::span<const WeightedRow> Hemisphere::visible() {
+  visible_.clear();
+  for (std::size_t i = 0; i < above_count_; ++i) {
+    if (!occluded_[i]) visible_.push_back({above_[i], cosines_[above_[i]]});
+  }
+  return visible_;
 }
 
 std::size_t Hemisphere::aim(std::size_t vertex) {

@@ -17,11 +17,13 @@ class Hemisphere {
  public:
   Hemisphere(const SceneIndex& index, const Directions& directions);
 
-  /// Casts a shadow ray in each direction above the vertex's horizon and sorts them into blocked()
-  /// and visible(): direction number and cosine, in the order of the directions.
+  /// Casts a shadow ray in each direction above the vertex's horizon.
   void trace(std::size_t vertex);
+  /// Those that are blocked: direction number and cosine, in the order of the directions.
   std::span<const WeightedRow> blocked() const { return {blocked_.data(), blocked_count_}; }
-  std::span<const WeightedRow> visible() const { return {visible_.data(), visible_count_}; }
+  /// The others.
+  std::span<const WeightedRow> visible();
+  std::size_t visible_count() const { return above_count_ - blocked_count_; }
 
   /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked().
   std::span<const ray::Hit> hits();
@@ -48,7 +50,7 @@ class Hemisphere {
   std::vector<std::uint32_t> above_;
   std::vector<ray::Ray> rays_;
   std::vector<WeightedRow> blocked_, visible_;
-  std::size_t blocked_count_ = 0, visible_count_ = 0;
+  std::size_t above_count_ = 0, blocked_count_ = 0;
   std::vector<std::uint8_t> occluded_;
   std::vector<ray::Hit> hits_;
   std::uint64_t rays_cast_ = 0;

@@ -3,8 +3,6 @@
 #include "core/cpu.h"
 
 #define PRT_INLINE inline __attribute__((always_inline))
-#define PRT_AVX2 __attribute__((target("avx2,fma")))
-#define PRT_AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma")))
 
 namespace prt::transfer {
 
@@ -44,18 +42,18 @@ PRT_INLINE void add_gathered_body(GatherTerms terms, const float* field, std::si
   }
 }
 
-PRT_AVX512 void add_rows_avx512(Terms terms, const float* rows, std::size_t stride, float* sum) {
+PRTKIT_AVX512 void add_rows_avx512(Terms terms, const float* rows, std::size_t stride, float* sum) {
   add_rows_body(terms, rows, stride, sum);
 }
-PRT_AVX2 void add_rows_avx2(Terms terms, const float* rows, std::size_t stride, float* sum) {
+PRTKIT_AVX2 void add_rows_avx2(Terms terms, const float* rows, std::size_t stride, float* sum) {
   add_rows_body(terms, rows, stride, sum);
 }
-PRT_AVX512 void add_gathered_avx512(GatherTerms terms, const float* field, std::size_t channels,
-                                    std::size_t columns, float* sum) {
+PRTKIT_AVX512 void add_gathered_avx512(GatherTerms terms, const float* field, std::size_t channels,
+                                       std::size_t columns, float* sum) {
   add_gathered_body(terms, field, channels, columns, sum);
 }
-PRT_AVX2 void add_gathered_avx2(GatherTerms terms, const float* field, std::size_t channels,
-                                std::size_t columns, float* sum) {
+PRTKIT_AVX2 void add_gathered_avx2(GatherTerms terms, const float* field, std::size_t channels,
+                                   std::size_t columns, float* sum) {
   add_gathered_body(terms, field, channels, columns, sum);
 }
 

@@ -54,12 +54,6 @@ TEST(SpatialOrder, IsAPermutationAndTakesAnyInput) {
   EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), mesh.positions.size());
 }
 
-TEST(ClampedCosine, FactorsAreThePublishedOnes) {
-  const double pi = std::numbers::pi;
-  const double expected[] = {pi, 2 * pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64, 0, -5 * pi / 640};
-  for (int l = 0; l < 9; ++l) EXPECT_NEAR(clamped_cosine_factor(l), expected[l], 1e-12) << l;
-}
-
 TEST(ClampedCosine, IsTheIntegralOverTheHemisphere) {
   const Directions directions = make_directions(200000, 3);
   const Vec3 normal = Vec3(0.3f, -0.8f, 0.5f).normalized();
