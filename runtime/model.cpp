@@ -58,11 +58,10 @@ Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransf
                  std::optional<signal::TransferSignal> signal) {
   Model model;
   for (const mesh::Primitive& primitive : scene.primitives) {
-    const auto first = static_cast<std::uint32_t>(model.positions.size());
     const mesh::TriangleMesh& mesh = primitive.mesh;
     model.positions.insert(model.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const std::uint32_t index : mesh.indices) model.indices.push_back(first + index);
   }
+  model.indices = scene.indices();
   model.bounds = camera::bounding_sphere(scene);
   const std::size_t vertex_count = model.positions.size();
   if (transfer) check_transfer(vertex_count, transfer->encoding.point_count, transfer->row_count);

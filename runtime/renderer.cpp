@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "cpca/superclusters.h"
 #include "gl/context.h"
+#include "image/false_color.h"
 #include "runtime/cluster_constants.h"
 #include "runtime/model_drawing.h"
 #include "runtime/shading.h"
@@ -48,7 +49,7 @@ gl::Texture make_environment_texture(const image::Image& map) {
 
 std::vector<Vec3> label_colors(const std::vector<std::uint32_t>& labels) {
   std::vector<Vec3> colors;
-  for (const std::uint32_t label : labels) colors.push_back(cluster_color(label));
+  for (const std::uint32_t label : labels) colors.push_back(image::cluster_color(label));
   return colors;
 }
 
@@ -61,7 +62,7 @@ std::vector<std::uint32_t> supercluster_labels(const gltf::PrecomputedTransfer& 
 std::vector<Vec3> error_colors(const Model& model) {
   std::vector<Vec3> colors;
   for (const float error : relative_errors(model))
-    colors.push_back(heat_color(error / kErrorScale));
+    colors.push_back(image::heat_color(error / kErrorScale));
   return colors;
 }
 

@@ -24,10 +24,4 @@ Vec3 vertex_radiance(const signal::TransferSignal& signal, std::size_t vertex,
 /// nowhere before. Display-linear in [0, 1]. Twin of tone_map.glsl.
 Vec3 tone_map(const Vec3& radiance);
 
-/// Display-linear colour of an error: blue, cyan, green, yellow, red over t in [0, 1].
-Vec3 heat_color(float t);
-
-/// Display-linear colour of a cluster: depends on its number alone, neighbours in number differ.
-Vec3 cluster_color(std::size_t cluster);
-
 }  // namespace prt::runtime

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "image/false_color.h"
 #include "inspect/canvas.h"
 #include "inspect/statistics.h"
 
@@ -89,13 +90,6 @@ Json to_json(const Sums& sums, bool with_noise) {
   return json;
 }
 
-// [Sloan03] Figure 4: blue, cyan, green, yellow, red. Display values, decoded to linear below.
-Vec3 scale_color(double share) {
-  const double t = 4.0 * std::clamp(share, 0.0, 1.0);
-  const auto ramp = [](double v) { return static_cast<float>(std::clamp(v, 0.0, 1.0)); };
-  return {ramp(t - 2.0), ramp(std::min(t, 4.0 - t)), ramp(2.0 - t)};
-}
-
 }  // namespace
 
 Comparison compare(const ComparisonInput& input) {
@@ -128,13 +122,15 @@ image::Image heatmap(const Comparison& comparison, double scale) {
   for (int y = 0; y < difference.height; ++y) {
     for (int x = 0; x < difference.width; ++x) {
       const float d = *difference.at(x, y);
-      canvas.fill(x, y, 1, 1, d < 0.0f ? Vec3(0.25f) : scale_color(d / scale));
+      canvas.fill(x, y, 1, 1,
+                  d < 0.0f ? Vec3(0.25f) : image::heat_color(static_cast<float>(d / scale)));
     }
   }
   const int bar_width = canvas.width() - 2 * kMargin;
   const int bar_y = difference.height + 6;
   for (int i = 0; i < bar_width; ++i) {
-    canvas.fill(kMargin + i, bar_y, 1, kBarHeight, scale_color((i + 0.5) / bar_width));
+    canvas.fill(kMargin + i, bar_y, 1, kBarHeight,
+                image::heat_color((static_cast<float>(i) + 0.5f) / static_cast<float>(bar_width)));
   }
   const int text_y = bar_y + kBarHeight + 5;
   const std::string high = fmt::format("{:.3g}", scale);

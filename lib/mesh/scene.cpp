@@ -77,6 +77,16 @@ std::vector<std::size_t> Scene::vertex_offsets() const {
   return offsets;
 }
 
+std::vector<std::uint32_t> Scene::indices() const {
+  std::vector<std::uint32_t> all;
+  std::uint32_t first = 0;
+  for (const Primitive& primitive : primitives) {
+    for (const std::uint32_t index : primitive.mesh.indices) all.push_back(first + index);
+    first += static_cast<std::uint32_t>(primitive.mesh.vertex_count());
+  }
+  return all;
+}
+
 Vec3 albedo_at(const Scene& scene, const Primitive& primitive, const Vec2& texcoord,
                const Vec4& color) {
   Vec3 albedo(color.x, color.y, color.z);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct Scene {
   std::size_t triangle_count() const;
   /// Number of the first vertex of each primitive, and the total at the end.
   std::vector<std::size_t> vertex_offsets() const;
+  /// Triangles of all primitives, three indices each, of vertices numbered through.
+  std::vector<std::uint32_t> indices() const;
 };
 
 /// Diffuse albedo (linear RGB, clamped to [0, 1]): factor × vertex colour × texture, bilinear.

@@ -139,26 +139,6 @@ TEST(ToneMap, KeepsBaseColorsAndOrderAndClampsOnlyNegatives) {
   EXPECT_GT(last, 0.99f);
 }
 
-TEST(HeatColor, RunsFromBlueOverGreenToRedAndClamps) {
-  EXPECT_EQ(heat_color(-1), Vec3(0, 0, 1));
-  EXPECT_EQ(heat_color(0.25f), Vec3(0, 1, 1));
-  EXPECT_EQ(heat_color(0.5f), Vec3(0, 1, 0));
-  EXPECT_EQ(heat_color(0.75f), Vec3(1, 1, 0));
-  EXPECT_EQ(heat_color(7), Vec3(1, 0, 0));
-}
-
-TEST(ClusterColor, NeighboursInNumberDiffer) {
-  for (std::size_t i = 0; i < 300; ++i) {
-    const Vec3 color = cluster_color(i);
-    for (int c = 0; c < 3; ++c) {
-      EXPECT_GE(color[c], 0.0f);
-      EXPECT_LE(color[c], 1.0f);
-    }
-    for (std::size_t j = i + 1; j < i + 8; ++j)
-      EXPECT_GT((color - cluster_color(j)).length(), 0.15f) << i << " and " << j;
-  }
-}
-
 TEST(Model, RefusesTransferOfAnotherMeshOrGlossy) {
   const mesh::Scene scene = scene_of({sphere(6, 8)});
   EXPECT_THROW(make_model(scene, random_transfer(5, 2, 1, 2, 1), {}), Error);

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "gl/context.h"
 #include "image/environment.h"
+#include "image/false_color.h"
 #include "runtime/cluster_constants.h"
 #include "runtime/cpu_pixels.h"
 #include "runtime/models.h"
@@ -254,16 +255,17 @@ TEST_P(EveryApi, FalseColorsAreThoseOfTheCpu) {
     const float* const pixel = image.at(kWidth / 2, kHeight / 2);
     return Vec3(pixel[0], pixel[1], pixel[2]);
   };
-  EXPECT_LT((middle(exact, Show::error) - heat_color(0)).length(), 1e-3f);
-  EXPECT_LT((middle(exact, Show::clusters) - cluster_color(0)).length(), 1e-5f);
+  EXPECT_LT((middle(exact, Show::error) - image::heat_color(0)).length(), 1e-3f);
+  EXPECT_LT((middle(exact, Show::clusters) - image::cluster_color(0)).length(), 1e-5f);
   gltf::PrecomputedTransfer grouped = with_superclusters(full_rank(signal, 12), 4);
   for (std::uint32_t& cluster : grouped.encoding.cluster_of_point) cluster = 6;
   const Model group = make_model(scene, grouped, signal);
-  EXPECT_LT((middle(group, Show::clusters) - cluster_color(6)).length(), 1e-5f);
-  EXPECT_LT((middle(group, Show::superclusters) - cluster_color(1)).length(), 1e-5f);
+  EXPECT_LT((middle(group, Show::clusters) - image::cluster_color(6)).length(), 1e-5f);
+  EXPECT_LT((middle(group, Show::superclusters) - image::cluster_color(1)).length(), 1e-5f);
   for (float& weight : transfer.encoding.weights) weight += 1.0f;
-  EXPECT_LT((middle(make_model(scene, transfer, signal), Show::error) - heat_color(1)).length(),
-            1e-5f);
+  EXPECT_LT(
+      (middle(make_model(scene, transfer, signal), Show::error) - image::heat_color(1)).length(),
+      1e-5f);
 }
 
 TEST_P(EveryApi, DevelopedPictureIsTheToneMapOfTheCpu) {
