@@ -1,6 +1,8 @@
 // prt-compress: clustered PCA of a transfer signal, into the glTF file that it belongs to.
 #include <fmt/format.h>
 
+#include <map>
+#include <optional>
 #include <string>
 
 #include "cli/paths.h"
@@ -8,6 +10,7 @@
 #include "core/log.h"
 #include "cpca/encoder.h"
 #include "cpca/report.h"
+#include "cpca/storage.h"
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "signal/transfer_signal.h"
@@ -20,7 +23,14 @@ struct Arguments {
   std::filesystem::path model, transfer, output;
   std::string method = "static";
   cpca::Options options;
+  cpca::StorageOptions storage;
 };
+
+const std::map<std::string, std::optional<cpca::WeightFormat>> kWeights = {
+    {"auto", std::nullopt},
+    {"float", cpca::WeightFormat::float32},
+    {"unorm16", cpca::WeightFormat::unorm16},
+    {"unorm8", cpca::WeightFormat::unorm8}};
 
 void add_options(CLI::App& app, Arguments& arguments) {
   cpca::Options& options = arguments.options;
@@ -47,6 +57,24 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->group(group);
 }
 
+void add_storage_options(CLI::App& app, cpca::StorageOptions& options) {
+  app.option_defaults()->group("Coherence and storage");
+  auto* const incoherent = app.add_flag("--no-coherence", options.is_incoherent,
+                                        "Leave clusters as they are, without superclusters");
+  app.add_option("--error-budget", options.coherence.error_budget,
+                 "Squared error that reclassification may add, as a share of what there is")
+      ->check(CLI::Range(0.0, 1e6))
+      ->excludes(incoherent);
+  app.add_option("--registers", options.coherence.register_budget,
+                 "vec4 constants of the clusters that are drawn at a time")
+      ->check(CLI::Range(1, 65536))
+      ->excludes(incoherent);
+  app.add_option_function<std::string>(
+         "--weights", [&](const std::string& name) { options.weights = kWeights.at(name); },
+         "How weights are stored; auto: as small as adds under 1% to the squared error [auto]")
+      ->check(CLI::IsMember(kWeights));
+}
+
 cpca::Encoded encode(const signal::TransferSignal& signal, const Arguments& arguments) {
   auto* const encoder =
       arguments.method == "iterative" ? cpca::encode_iterative : cpca::encode_static;
@@ -55,12 +83,18 @@ cpca::Encoded encode(const signal::TransferSignal& signal, const Arguments& argu
 
 void report_encoding(const cpca::Encoded& encoded, const signal::TransferSignal& signal,
                      Report& report) {
-  for (const cpca::Stage& stage : encoded.stages) report.add_stage(stage.name, stage.seconds);
   const StageTimer timer(report, "errors");
   std::vector<cpca::Group> groups;
   for (const auto& block : signal.blocks) groups.push_back({block.name, block.vertex_count});
   report.json().update(cpca::to_json(encoded, signal.values, groups));
   report.json()["blas"] = linalg::blas_description();
+}
+
+/// As stored, in place of the encoder's estimate.
+void report_bytes(const gltf::PrecomputedTransfer& transfer, nlohmann::ordered_json& json) {
+  const std::size_t bytes = gltf::stored_bytes(transfer).total();
+  json["bytes"] = bytes;
+  json["compression_ratio"] = json["signal_bytes"].get<double>() / static_cast<double>(bytes);
 }
 
 struct Input {
@@ -87,14 +121,22 @@ void compress(Arguments arguments, const cli::CommonOptions& common, Report& rep
   Input input = load(arguments, report);
   const signal::TransferSignal& signal = input.signal;
   cpca::Encoded encoded = encode(signal, arguments);
+  for (const cpca::Stage& stage : encoded.stages) report.add_stage(stage.name, stage.seconds);
+  const cpca::Storage storage =
+      cpca::prepare_storage(signal.values, input.document.scene().indices(), signal.row_count,
+                            arguments.storage, encoded.encoding, report);
   report_encoding(encoded, signal, report);
-  const StageTimer save(report, "save");
-  input.document.set_precomputed_transfer({.band_count = signal.band_count,
+  const gltf::PrecomputedTransfer transfer{.band_count = signal.band_count,
                                            .row_count = signal.row_count,
                                            .channel_count = signal.channel_count,
                                            .brdf = signal.brdf,
                                            .mesh_hash = signal.mesh_hash,
-                                           .encoding = std::move(encoded.encoding)});
+                                           .encoding = std::move(encoded.encoding),
+                                           .weight_format = storage.weight_format,
+                                           .first_clusters = storage.first_clusters};
+  report_bytes(transfer, report.json());
+  const StageTimer save(report, "save");
+  input.document.set_precomputed_transfer(transfer);
   input.document.save_glb(arguments.output, common.no_clobber);
   report.add_output(arguments.output);
 }
@@ -116,6 +158,7 @@ int main(int argc, char** argv) {
                  "prt-compress a.glb a.transfer.exr -o a.prt.glb --clusters 256 --components 8");
   Arguments arguments;
   add_options(tool.app(), arguments);
+  add_storage_options(tool.app(), arguments.storage);
   tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) {
     compress(arguments, tool.common(), report);

@@ -56,4 +56,21 @@ Coherence make_coherent(std::span<const float> signal, std::span<const std::uint
   return coherence;
 }
 
+nlohmann::ordered_json to_json(const Coherence& coherence, const CoherenceOptions& options) {
+  const auto rate = [&](std::size_t sent) { return overdraw(sent, coherence.triangle_count); };
+  return {{"overdraw_initial", rate(coherence.sent_initial)},
+          {"overdraw_reclassified", rate(coherence.sent_reclassified)},
+          {"overdraw_superclustered", rate(coherence.sent_superclustered)},
+          {"triangle_count", coherence.triangle_count},
+          {"sent_triangles_initial", coherence.sent_initial},
+          {"sent_triangles_reclassified", coherence.sent_reclassified},
+          {"sent_triangles_superclustered", coherence.sent_superclustered},
+          {"supercluster_count", coherence.first_clusters.size()},
+          {"error_budget", options.error_budget},
+          {"register_budget", options.register_budget},
+          {"moved_count", coherence.moved_count},
+          {"squared_error_initial", coherence.initial_error},
+          {"squared_error_reclassified", coherence.final_error}};
+}
+
 }  // namespace prt::cpca

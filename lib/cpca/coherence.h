@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -34,5 +35,8 @@ struct Coherence {
 /// index past the last.
 Coherence make_coherent(std::span<const float> signal, std::span<const std::uint32_t> indices,
                         int row_count, const CoherenceOptions& options, Encoding& encoding);
+
+/// Keys of docs/tools/prt-compress.md.
+nlohmann::ordered_json to_json(const Coherence& coherence, const CoherenceOptions& options);
 
 }  // namespace prt::cpca

@@ -44,6 +44,12 @@ double squared_error(std::span<const float> signal, const Encoding& encoding) {
 
 }  // namespace
 
+const char* name_of(WeightFormat format) {
+  return format == WeightFormat::float32   ? "float"
+         : format == WeightFormat::unorm16 ? "unorm16"
+                                           : "unorm8";
+}
+
 std::size_t bytes_of(WeightFormat format) {
   return format == WeightFormat::float32 ? 4 : format == WeightFormat::unorm16 ? 2 : 1;
 }

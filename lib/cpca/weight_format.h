@@ -13,6 +13,8 @@ namespace prt::cpca {
 
 enum class WeightFormat { float32, unorm16, unorm8 };
 
+/// float, unorm16, unorm8.
+const char* name_of(WeightFormat format);
 std::size_t bytes_of(WeightFormat format);
 /// The greatest integer of a normalised format, which stands for 1.
 float greatest(WeightFormat format);

@@ -97,12 +97,6 @@ Json describe_bytes(const gltf::PrecomputedTransfer& transfer) {
            encoding.point_count * static_cast<std::size_t>(encoding.dimension) * sizeof(float)}};
 }
 
-const char* name_of(cpca::WeightFormat format) {
-  return format == cpca::WeightFormat::float32   ? "float"
-         : format == cpca::WeightFormat::unorm16 ? "unorm16"
-                                                 : "unorm8";
-}
-
 void check_encoding(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
                     Inspection& inspection) {
   const cpca::Encoding& encoding = transfer.encoding;
@@ -151,7 +145,7 @@ void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
       {"cluster_count", encoding.cluster_count},
       {"component_count", encoding.component_count},
       {"adaptive", !encoding.component_counts.empty()},
-      {"weights", name_of(transfer.weight_format)},
+      {"weights", cpca::name_of(transfer.weight_format)},
       {"supercluster_count", transfer.first_clusters.empty()
                                  ? static_cast<std::size_t>(encoding.cluster_count)
                                  : transfer.first_clusters.size()},

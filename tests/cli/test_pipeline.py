@@ -6,7 +6,7 @@ import math
 import subprocess
 import unittest
 
-from toolbox import BIN, BUNNY, SOURCE, WORLD, ToolTest
+from toolbox import BIN, BUNNY, SOURCE, WORLD, WRONG_USAGE, ToolTest
 
 BOX = SOURCE / "data/colored_box.obj"
 TOOLS = ("prt-import", "prt-light", "prt-transfer", "prt-compress", "prt-render", "prt-view",
@@ -49,6 +49,33 @@ class Pipeline(ToolTest):
         self.assertEqual(compress["cluster_count"], 16)
         self.assertEqual(compress["component_count"], 4)
         self.assertLess(math.sqrt(compress["squared_error"] / compress["signal_energy"]), 0.1)
+
+    def test_coherence_sends_fewer_triangles_within_its_budget(self):
+        paths = self.bake(BUNNY, edge=0.02, clusters=64)
+        report, compress = self.folder / "r", ("prt-compress", paths["glb"], paths["transfer.exr"],
+                                               "-o", paths["prt.glb"], "--clusters", 64,
+                                               "--components", 4, "--report")
+        coherent = self.load(paths["c"])
+        self.assertEqual(coherent["error_budget"], 0.05)
+        self.assertGreater(coherent["overdraw_initial"], coherent["overdraw_reclassified"])
+        self.assertGreater(coherent["overdraw_reclassified"], coherent["overdraw_superclustered"])
+        self.assertGreaterEqual(coherent["overdraw_superclustered"], 1)
+        self.assertLess(coherent["supercluster_count"], 64)
+        self.assertLessEqual(coherent["squared_error_reclassified"],
+                             1.05 * coherent["squared_error_initial"])
+        self.assertLessEqual(coherent["squared_error"],
+                             1.01 * coherent["squared_error_reclassified"])
+        sizes = {}
+        for weights in ("float", "unorm16", "unorm8"):
+            self.done(*compress, report, "--no-coherence", "--weights", weights)
+            plain = self.load(report)
+            self.assertNotIn("overdraw_initial", plain)
+            self.assertEqual(plain["weights"], weights)
+            sizes[weights] = (plain["bytes"], plain["squared_error"])
+        self.assertGreater(sizes["float"][0], sizes["unorm16"][0])
+        self.assertGreater(sizes["unorm16"][0], sizes["unorm8"][0])
+        self.assertLessEqual(sizes["float"][1], sizes["unorm8"][1])
+        self.refused(WRONG_USAGE, "excludes", *compress, report, "--no-coherence", "--registers", 9)
 
     def test_same_bytes_for_any_thread_count_and_twice(self):
         digests = []
