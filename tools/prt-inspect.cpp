@@ -8,8 +8,8 @@
 #include "inspect/compare.h"
 #include "inspect/compression_error.h"
 #include "inspect/hemisphere.h"
-#include "inspect/histogram.h"
 #include "inspect/inspection.h"
+#include "inspect/plots.h"
 
 namespace {
 
@@ -31,7 +31,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--transfer", options.transfer,
                  "Transfer that FILE was compressed from: reports the error, vertex by vertex")
       ->group("Compression error");
-  app.add_option("--plots", options.plots, "Existing folder for error-histogram.png and .csv")
+  app.add_option("--plots", options.plots,
+                 "Existing folder for pictures (.png) and tables (.csv) of the "
+                 "clusters and, with --transfer, of the error and of other encodings")
       ->group("Compression error");
   app.add_option("--compare", options.compare, "Two images, the second being the reference")
       ->expected(2)
@@ -52,7 +54,7 @@ void check_usage(const Options& options) {
     reject("name one of FILE, --compare and --hemisphere");
   }
   if (!options.transfer.empty() && options.file.empty()) reject("--transfer needs FILE");
-  if (!options.plots.empty() && options.transfer.empty()) reject("--plots needs --transfer");
+  if (!options.plots.empty() && options.file.empty()) reject("--plots needs FILE");
   const bool of_comparison =
       !options.mask.empty() || !options.noise.empty() || !options.heatmap.empty();
   if (of_comparison && options.compare.empty()) {
@@ -68,25 +70,26 @@ void check_files(const Options& options, const cli::CommonOptions& common) {
   inputs.insert(inputs.end(), options.compare.begin(), options.compare.end());
   std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
-    outputs.push_back({options.plots / "error-histogram.png", {".png"}, {}});
-    outputs.push_back({options.plots / "error-histogram.csv", {".csv"}, {}});
+    for (const std::string& name : inspect::plot_names(!options.transfer.empty())) {
+      outputs.push_back({options.plots / (name + ".png"), {".png"}, {}});
+      outputs.push_back({options.plots / (name + ".csv"), {".csv"}, {}});
+    }
   }
   cli::check_paths(inputs, outputs, common);
 }
 
-void write_plots(const Options& options, const std::vector<double>& errors, bool no_clobber,
+void write_plots(const std::vector<inspect::Plot>& plots, const Options& options, bool no_clobber,
                  Report& report) {
-  const inspect::Histogram histogram = inspect::make_histogram(errors);
-  const fs::path png = options.plots / "error-histogram.png";
-  const fs::path csv = options.plots / "error-histogram.csv";
-  const std::string title = "Compression error of " + options.file.filename().string();
-  image::write_image(png, plot(histogram, title, "error of a vertex / root mean square transfer"),
-                     no_clobber);
-  AtomicFile file(csv, no_clobber);
-  file.write(to_csv(histogram));
-  file.commit();
-  report.add_output(png);
-  report.add_output(csv);
+  for (const inspect::Plot& plot : plots) {
+    const fs::path png = options.plots / (plot.name + ".png");
+    const fs::path csv = options.plots / (plot.name + ".csv");
+    image::write_image(png, plot.image, no_clobber);
+    AtomicFile file(csv, no_clobber);
+    file.write(plot.csv);
+    file.commit();
+    report.add_output(png);
+    report.add_output(csv);
+  }
 }
 
 bool inspect_one(const Options& options, bool no_clobber, Report& report, inspect::Json& json) {
@@ -95,13 +98,20 @@ bool inspect_one(const Options& options, bool no_clobber, Report& report, inspec
     report.add_input(options.file);
     const inspect::Inspection inspection = inspect::inspect_file(options.file);
     json = inspection.json;
-    if (!inspection.valid() || options.transfer.empty()) return inspection.valid();
+    if (!inspection.valid()) return false;
   }
+  if (!options.plots.empty()) {
+    const StageTimer timer(report, "plots");
+    write_plots(inspect::plots_of_model(options.file), options, no_clobber, report);
+  }
+  if (options.transfer.empty()) return true;
   const StageTimer timer(report, "compression error");
   report.add_input(options.transfer);
-  const auto error = inspect::compression_error(options.file, options.transfer);
-  json["compression_error"] = error.json;
-  if (!options.plots.empty()) write_plots(options, error.relative, no_clobber, report);
+  json["compression_error"] = inspect::compression_error(options.file, options.transfer).json;
+  if (!options.plots.empty()) {
+    write_plots(inspect::plots_of_compression(options.file, options.transfer), options, no_clobber,
+                report);
+  }
   return true;
 }
 

@@ -1,0 +1,109 @@
+#include "inspect/encoding_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "cpca/coherence.h"
+#include "cpca/encoder.h"
+#include "cpca/superclusters.h"
+
+namespace prt::inspect {
+
+namespace {
+
+constexpr int kVectorCounts[] = {0, 1, 2, 4, 8, 16};
+constexpr int kMostClusters = 1024;
+
+/// Squared error with the first 0, 1, … component_count vectors of each cluster: vectors of static
+/// CPCA are nested and orthonormal, so that leaving one out adds its weights' squares.
+std::vector<double> errors_by_count(const cpca::Encoding& encoding,
+                                    const std::vector<float>& signal) {
+  const auto components = static_cast<std::size_t>(encoding.component_count);
+  const std::vector<double> errors = cpca::point_errors(encoding, signal);
+  std::vector<double> by_count(components + 1);
+  by_count[components] = std::accumulate(errors.begin(), errors.end(), 0.0);
+  for (std::size_t i = components; i > 0; --i) {
+    double squares = 0.0;
+    for (std::size_t w = i - 1; w < encoding.weights.size(); w += components) {
+      squares += double{encoding.weights[w]} * double{encoding.weights[w]};
+    }
+    by_count[i - 1] = by_count[i] + squares;
+  }
+  return by_count;
+}
+
+std::vector<double> counts_up_to(int most) {
+  std::vector<double> counts(static_cast<std::size_t>(most) + 1);
+  std::iota(counts.begin(), counts.end(), 0.0);
+  return counts;
+}
+
+}  // namespace
+
+LinePlot error_over_storage(const signal::TransferSignal& signal) {
+  LinePlot plot{.title = "Squared error over storage, static CPCA",
+                .x_label = "numbers stored",
+                .y_label = "squared error",
+                .log_x = true,
+                .series = {}};
+  const int dimension = signal.dimension();
+  const auto point_count = static_cast<int>(signal.vertex_count());
+  for (const int n : kVectorCounts) {
+    if (n <= dimension) plot.series.push_back({fmt::format("n' = {}", n), {}, {}});
+  }
+  const int most = std::clamp(point_count / 32, 1, kMostClusters);
+  for (int clusters = 1; clusters <= most; clusters *= 4) {
+    const cpca::Encoded encoded = cpca::encode_static(
+        signal.values, dimension,
+        {.cluster_count = clusters, .component_count = std::min(dimension, kVectorCounts[5])});
+    const std::vector<double> errors = errors_by_count(encoded.encoding, signal.values);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+      const int n = kVectorCounts[i];
+      plot.series[i].x.push_back(double{1.0} * point_count * n +
+                                 double{1.0} * clusters * (n + 1) * dimension);
+      plot.series[i].y.push_back(errors[static_cast<std::size_t>(n)]);
+    }
+  }
+  return plot;
+}
+
+LinePlot error_over_components(const signal::TransferSignal& signal, int cluster_count,
+                               int most_components) {
+  const int most = std::min(most_components, signal.dimension());
+  const cpca::Options options{.cluster_count = cluster_count, .component_count = most};
+  LinePlot plot{.title = fmt::format("Squared error over vectors, {} clusters", cluster_count),
+                .x_label = "vectors a cluster",
+                .y_label = "squared error",
+                .series = {}};
+  const cpca::Encoded fixed = cpca::encode_static(signal.values, signal.dimension(), options);
+  plot.series.push_back(
+      {"static", counts_up_to(most), errors_by_count(fixed.encoding, signal.values)});
+  const cpca::Encoded iterative =
+      cpca::encode_iterative(signal.values, signal.dimension(), options);
+  Series& curve = plot.series.emplace_back(Series{"iterative", {}, {}});
+  for (const cpca::Level& level : iterative.levels) {
+    curve.x.push_back(level.component_count);
+    curve.y.push_back(level.errors.back());
+  }
+  return plot;
+}
+
+CoherenceStudy study_coherence(const signal::TransferSignal& signal,
+                               const std::vector<std::uint32_t>& indices, int cluster_count,
+                               int component_count) {
+  cpca::Encoding encoding =
+      cpca::encode_iterative(signal.values, signal.dimension(),
+                             {.cluster_count = cluster_count, .component_count = component_count})
+          .encoding;
+  CoherenceStudy study;
+  study.before = encoding.cluster_of_point;
+  const cpca::Coherence coherence =
+      cpca::make_coherent(signal.values, indices, signal.row_count, {}, encoding);
+  study.reclassified = encoding.cluster_of_point;
+  study.superclustered = cpca::superclusters_of_points(encoding, coherence.first_clusters);
+  return study;
+}
+
+}  // namespace prt::inspect

@@ -1,0 +1,31 @@
+// What other encodings of a signal would cost and give: the experiments of [Sloan03] §4 and §5.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cpca/encoding.h"
+#include "inspect/line_plot.h"
+#include "signal/transfer_signal.h"
+
+namespace prt::inspect {
+
+/// [Sloan03] Figure 2: squared error over storage m_p n' + m_c (n' + 1) n of static CPCA, a curve
+/// for each n' of 0, 1, 2, 4, 8, 16, along numbers of clusters 1, 4, 16, … up to 1,024 and to a
+/// thirty-second of the points.
+LinePlot error_over_storage(const signal::TransferSignal& signal);
+
+/// [Sloan03] Figure 3: squared error over n' = 0 … `most_components`, a curve for each method.
+LinePlot error_over_components(const signal::TransferSignal& signal, int cluster_count,
+                               int most_components);
+
+/// [Sloan03] Figure 5: an iterative encoding of the signal before and after coherence optimisation
+/// with the usual budgets.
+struct CoherenceStudy {
+  std::vector<std::uint32_t> before, reclassified, superclustered;  ///< labels of the points
+};
+CoherenceStudy study_coherence(const signal::TransferSignal& signal,
+                               const std::vector<std::uint32_t>& indices, int cluster_count,
+                               int component_count);
+
+}  // namespace prt::inspect

@@ -1,0 +1,125 @@
+#include "inspect/plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "cpca/overdraw.h"
+#include "cpca/superclusters.h"
+#include "gltf/document.h"
+#include "image/false_color.h"
+#include "inspect/compression_error.h"
+#include "inspect/encoding_study.h"
+#include "inspect/histogram.h"
+#include "inspect/mesh_picture.h"
+#include "inspect/statistics.h"
+
+namespace prt::inspect {
+
+namespace {
+
+constexpr int kMostComponents = 12;  // of the comparison of methods
+
+using Labels = std::vector<std::uint32_t>;
+
+struct CompressedModel {
+  mesh::Scene scene;
+  gltf::PrecomputedTransfer transfer;
+};
+
+CompressedModel load(const std::filesystem::path& path) {
+  const gltf::Document document = gltf::Document::load(path);
+  auto transfer = document.precomputed_transfer();
+  if (!transfer) {
+    throw_bad_input("holds no compressed transfer to plot",
+                    {.file = path.string(), .advice = "Run prt-compress on it."});
+  }
+  return {document.scene(), std::move(*transfer)};
+}
+
+std::string sizes_csv(const Labels& labels) {
+  std::vector<std::size_t> sizes(
+      labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1);
+  for (const std::uint32_t label : labels) ++sizes[label];
+  std::string csv = "label,vertices\n";
+  for (std::size_t i = 0; i < sizes.size(); ++i) csv += fmt::format("{},{}\n", i, sizes[i]);
+  return csv;
+}
+
+// A colour for each cluster or supercluster, and how often triangles are sent when drawn by them.
+Plot label_plot(const std::string& name, const mesh::Scene& scene, const Labels& labels) {
+  std::vector<Vec3> colors;
+  for (const std::uint32_t label : labels) colors.push_back(image::cluster_color(label));
+  const double overdraw =
+      cpca::overdraw(cpca::sent_triangle_count(scene.indices(), labels), scene.triangle_count());
+  return {name,
+          draw_scene(scene, colors, false, fmt::format("{}: overdraw {:.3f}", name, overdraw)),
+          sizes_csv(labels)};
+}
+
+// Red is the 99th percentile of a vertex's error: what stands out is where the error is.
+Plot error_plot(const mesh::Scene& scene, std::vector<double> errors) {
+  std::string csv = "vertex,relative_error\n";
+  for (std::size_t p = 0; p < errors.size(); ++p) csv += fmt::format("{},{:.6g}\n", p, errors[p]);
+  std::vector<double> sorted = errors;
+  const double scale = sorted.empty() ? 0.0 : percentile(sorted, 0.99);
+  std::vector<Vec3> colors;
+  for (const double error : errors) {
+    colors.push_back(image::heat_color(scale > 0.0 ? static_cast<float>(error / scale) : 0.0f));
+  }
+  return {
+      "error",
+      draw_scene(scene, colors, true, fmt::format("relative error, red: {:.3g} and more", scale)),
+      csv};
+}
+
+}  // namespace
+
+std::vector<Plot> plots_of_model(const std::filesystem::path& path) {
+  const CompressedModel model = load(path);
+  const cpca::Encoding& encoding = model.transfer.encoding;
+  const Labels superclusters =
+      model.transfer.first_clusters.empty()
+          ? encoding.cluster_of_point
+          : cpca::superclusters_of_points(encoding, model.transfer.first_clusters);
+  return {label_plot("clusters", model.scene, encoding.cluster_of_point),
+          label_plot("superclusters", model.scene, superclusters)};
+}
+
+std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
+                                       const std::filesystem::path& transfer_path) {
+  const CompressedModel model = load(path);
+  const CompressionError error = compression_error(path, transfer_path);
+  const signal::TransferSignal signal = signal::read_transfer(transfer_path);
+  const Histogram histogram = make_histogram(error.relative);
+  std::vector<Plot> plots;
+  plots.push_back({"error-histogram",
+                   plot(histogram, "Compression error of " + path.filename().string(),
+                        "error of a vertex / root mean square transfer"),
+                   to_csv(histogram)});
+  plots.push_back(error_plot(model.scene, error.relative));
+  const int clusters = model.transfer.encoding.cluster_count;
+  const LinePlot storage = error_over_storage(signal);
+  plots.push_back({"error-over-storage", draw(storage), to_csv(storage)});
+  const LinePlot methods = error_over_components(signal, clusters, kMostComponents);
+  plots.push_back({"error-over-components", draw(methods), to_csv(methods)});
+  const CoherenceStudy study = study_coherence(signal, model.scene.indices(), clusters,
+                                               model.transfer.encoding.component_count);
+  plots.push_back(label_plot("clusters-before", model.scene, study.before));
+  plots.push_back(label_plot("clusters-reclassified", model.scene, study.reclassified));
+  plots.push_back(label_plot("clusters-superclustered", model.scene, study.superclustered));
+  return plots;
+}
+
+std::vector<std::string> plot_names(bool with_transfer) {
+  std::vector<std::string> names{"clusters", "superclusters"};
+  if (with_transfer) {
+    names.insert(names.end(),
+                 {"error-histogram", "error", "error-over-storage", "error-over-components",
+                  "clusters-before", "clusters-reclassified", "clusters-superclustered"});
+  }
+  return names;
+}
+
+}  // namespace prt::inspect

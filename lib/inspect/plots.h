@@ -1,0 +1,33 @@
+// What `prt-inspect --plots` writes: pictures and tables of a compressed model.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace prt::inspect {
+
+struct Plot {
+  std::string name;    ///< of the files, without extension
+  image::Image image;  ///< linear, as image::write_image takes it
+  std::string csv;     ///< the data
+};
+
+/// What a file alone tells: `clusters` and `superclusters`, coloured, and the sizes of clusters.
+/// Throws Error (bad_input) when the model holds no compressed transfer.
+std::vector<Plot> plots_of_model(const std::filesystem::path& model);
+
+/// What the transfer that it was compressed from adds: `error-histogram`, `error`, and what other
+/// encodings of that signal would give: `error-over-storage`, `error-over-components`, and clusters
+/// as an iterative encoder leaves them (`clusters-before`) and after coherence optimisation
+/// (`clusters-reclassified`, `clusters-superclustered`), with as many clusters and vectors as the
+/// model has.
+std::vector<Plot> plots_of_compression(const std::filesystem::path& model,
+                                       const std::filesystem::path& transfer);
+
+/// Names of all files that the two can write, without extension.
+std::vector<std::string> plot_names(bool with_transfer);
+
+}  // namespace prt::inspect

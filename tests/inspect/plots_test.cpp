@@ -1,0 +1,128 @@
+#include "inspect/plots.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "cpca/encoder.h"
+#include "inspect/encoding_study.h"
+#include "inspect/line_plot.h"
+#include "inspect/mesh_picture.h"
+#include "sample_files.h"
+
+namespace prt::inspect {
+namespace {
+
+/// A row of points of 9 coefficients that change smoothly, with a little noise.
+signal::TransferSignal smooth_signal(std::size_t point_count) {
+  signal::TransferSignal signal;
+  signal.band_count = 3;
+  signal.blocks.push_back({"row", point_count});
+  Pcg32 random(4);
+  for (std::size_t p = 0; p < point_count; ++p) {
+    for (int k = 0; k < 9; ++k) {
+      signal.values.push_back(std::sin(0.01f * static_cast<float>(k + 1) * static_cast<float>(p)) +
+                              0.01f * random.uniform());
+    }
+  }
+  return signal;
+}
+
+double static_error(const signal::TransferSignal& signal, int clusters, int components) {
+  const auto encoded = cpca::encode_static(
+      signal.values, 9, {.cluster_count = clusters, .component_count = components});
+  double sum = 0.0;
+  for (const double error : cpca::point_errors(encoded.encoding, signal.values)) sum += error;
+  return sum;
+}
+
+TEST(EncodingStudy, ErrorOverStorageIsThatOfEncodingEachTime) {
+  const signal::TransferSignal signal = smooth_signal(640);
+  const LinePlot plot = error_over_storage(signal);
+  ASSERT_EQ(plot.series.size(), 5u);  // n' = 16 is more than there are coefficients
+  const int counts[] = {0, 1, 2, 4, 8};
+  for (std::size_t s = 0; s < 5; ++s) {
+    const Series& series = plot.series[s];
+    ASSERT_EQ(series.x.size(), 3u);  // 1, 4, 16 clusters
+    int clusters = 1;
+    for (std::size_t i = 0; i < 3; ++i, clusters *= 4) {
+      EXPECT_EQ(series.x[i], 640 * counts[s] + clusters * (counts[s] + 1) * 9);
+      const double expected = static_error(signal, clusters, counts[s]);
+      EXPECT_NEAR(series.y[i], expected, 1e-3 * expected + 1e-6);
+    }
+  }
+}
+
+TEST(EncodingStudy, MethodsStartAlikeAndFallWithEveryVector) {
+  const signal::TransferSignal signal = smooth_signal(640);
+  const LinePlot plot = error_over_components(signal, 8, 4);
+  ASSERT_GE(plot.series.size(), 2u);
+  for (const Series& series : plot.series) {
+    ASSERT_EQ(series.x.size(), 5u) << series.name;
+    for (std::size_t i = 1; i < 5; ++i) EXPECT_LT(series.y[i], series.y[i - 1]) << series.name;
+  }
+  EXPECT_LT(plot.series[1].y.back(), plot.series[0].y.back());
+}
+
+TEST(LinePlot, WritesEveryPointAndDrawsItWhereItBelongs) {
+  const LinePlot plot{.title = "t",
+                      .x_label = "x",
+                      .y_label = "y",
+                      .series = {{"a", {0, 1, 2}, {1, 0.1, 0.01}}, {"b", {0, 2}, {0, 1}}}};
+  EXPECT_EQ(to_csv(plot), "series,x,y\na,0,1\na,1,0.1\na,2,0.01\nb,0,0\nb,2,1\n");
+  const image::Image image = draw(plot);
+  std::size_t colored_count = 0;
+  for (int y = 44; y < 404; ++y) {
+    for (int x = 72; x < 632; ++x) {
+      const float* const p = image.at(x, y);
+      colored_count += std::max({p[0], p[1], p[2]}) > std::min({p[0], p[1], p[2]}) + 0.1f;
+    }
+  }
+  EXPECT_GT(colored_count, 500u);  // a line across the plot and its marks
+  EXPECT_NO_THROW(draw({.title = "", .x_label = "", .y_label = "", .series = {}}));
+}
+
+TEST(MeshPicture, ShowsTheNearestTriangleInItsColor) {
+  mesh::Scene scene;
+  for (const float z : {0.0f, 0.5f, -0.5f}) {  // the middle one is drawn first, the far one last
+    mesh::Primitive& primitive = scene.primitives.emplace_back();
+    primitive.mesh.positions = {{-1, -1, z}, {1, -1, z}, {0, 1, z}};
+    primitive.mesh.normals.assign(3, {0, 0, 1});
+    primitive.mesh.indices = {0, 1, 2};
+  }
+  std::vector<Vec3> colors(9, Vec3(0, 1, 0));
+  for (std::size_t i = 3; i < 6; ++i) colors[i] = Vec3(1, 0, 0);
+  for (const bool smooth : {false, true}) {
+    const image::Image image = draw_scene(scene, colors, smooth, "", 64);
+    const float* const middle = image.at(32, 36);
+    EXPECT_GT(middle[0], 0.5f);
+    EXPECT_EQ(middle[1], 0.0f);
+    EXPECT_EQ(image.at(1, 1)[1], 1.0f);  // beside: white
+  }
+}
+
+class PlotsTest : public SampleFiles {};
+
+TEST_F(PlotsTest, AreThoseThatAreAnnounced) {
+  const auto model = write_baked(transfer());
+  std::vector<std::string> names;
+  for (const Plot& plot : plots_of_model(model)) {
+    names.push_back(plot.name);
+    EXPECT_GT(plot.image.pixel_count(), 10000u);
+    EXPECT_GT(plot.csv.size(), 20u);
+  }
+  EXPECT_EQ(names, plot_names(false));
+  for (const Plot& plot : plots_of_compression(model, write_transfer())) {
+    names.push_back(plot.name);
+    EXPECT_GT(plot.image.pixel_count(), 10000u);
+    EXPECT_GT(plot.csv.size(), 20u);
+  }
+  EXPECT_EQ(names, plot_names(true));
+  EXPECT_THROW(plots_of_model(write_model()), Error);
+}
+
+}  // namespace
+}  // namespace prt::inspect
