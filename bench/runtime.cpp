@@ -2,8 +2,12 @@
 // work for a change of light. The model has the size of the Stanford bunny's bake: 34,848 vertices,
 // 256 clusters of 8 vectors, colour transfer of 5 bands. Frames are 512x512 without antialiasing
 // and without background, so that vertices weigh as they do on hardware that rasterises fast.
+// bench_runtime a.prt.glb draws that model instead.
 #include <benchmark/benchmark.h>
 
+#include <filesystem>
+
+#include "cpca/superclusters.h"
 #include "gl/context.h"
 #include "runtime/cluster_chunks.h"
 #include "runtime/cluster_constants.h"
@@ -17,8 +21,11 @@ using namespace prt::runtime;
 
 constexpr int kBandCount = 5, kClusterCount = 256, kComponentCount = 8, kSize = 512;
 
+std::filesystem::path given_model;  // of the command line
+
 /// Clusters of neighbouring vertices, as a bake makes them, rather than scattered ones.
 Model make_bench_model() {
+  if (!given_model.empty()) return load_model(given_model);
   const mesh::Scene scene = scene_of({torus(264, 132)});
   gltf::PrecomputedTransfer transfer =
       random_transfer(scene.vertex_count(), kBandCount, 3, kClusterCount, kComponentCount);
@@ -27,13 +34,19 @@ Model make_bench_model() {
     transfer.encoding.cluster_of_point[p] =
         static_cast<std::uint32_t>(ring * 16 / 264 * 16 + side * 16 / 132);
   }
+  transfer.first_clusters = cpca::sort_clusters(
+      cpca::find_superclusters(scene.indices(), transfer.encoding.cluster_of_point,
+                               cpca::register_counts(transfer.encoding, 1), 256),
+      transfer.encoding);
   return make_model(scene, transfer,
                     unshadowed(scene, kBandCount, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
 }
 
-void draw_frames(benchmark::State& state, Draw draw) {
+void draw_frames(benchmark::State& state, Draw draw, bool superclusters) {
   const gl::HeadlessContext context;
-  const Model model = make_bench_model();
+  Model model = make_bench_model();
+  if (draw == Draw::uncompressed && !model.signal) return state.SkipWithError("no transfer");
+  if (!superclusters) model.transfer->first_clusters.clear();
   Renderer renderer;
   renderer.set_model(model);
   renderer.set_lighting(lighting_from(test_light(kBandCount)));
@@ -49,13 +62,16 @@ void draw_frames(benchmark::State& state, Draw draw) {
   state.SetItemsProcessed(state.iterations());
   state.SetLabel(gl::description());
 }
-BENCHMARK_CAPTURE(draw_frames, compressed_single, Draw::single)
+BENCHMARK_CAPTURE(draw_frames, compressed_single, Draw::single, false)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(draw_frames, compressed_clusters, Draw::clusters)
+BENCHMARK_CAPTURE(draw_frames, compressed_clusters, Draw::clusters, false)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(draw_frames, uncompressed, Draw::uncompressed)
+BENCHMARK_CAPTURE(draw_frames, compressed_superclusters, Draw::clusters, true)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(draw_frames, uncompressed, Draw::uncompressed, false)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
@@ -87,4 +103,8 @@ BENCHMARK(change_light_in_renderer)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (argc > 1) given_model = argv[1];
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -87,6 +87,16 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
     curve.x.push_back(level.component_count);
     curve.y.push_back(level.errors.back());
   }
+  Series& adaptive = plot.series.emplace_back(Series{"adaptive", {}, {}});
+  for (const int n : kVectorCounts) {
+    if (n == 0 || n > most) continue;
+    cpca::Options fewer = options;
+    fewer.component_count = n;
+    const cpca::Encoded encoded = cpca::encode_adaptive(signal.values, signal.dimension(), fewer);
+    const std::vector<double> errors = cpca::point_errors(encoded.encoding, signal.values);
+    adaptive.x.push_back(n);
+    adaptive.y.push_back(std::accumulate(errors.begin(), errors.end(), 0.0));
+  }
   return plot;
 }
 

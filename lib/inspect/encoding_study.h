@@ -15,7 +15,8 @@ namespace prt::inspect {
 /// thirty-second of the points.
 LinePlot error_over_storage(const signal::TransferSignal& signal);
 
-/// [Sloan03] Figure 3: squared error over n' = 0 … `most_components`, a curve for each method.
+/// [Sloan03] Figure 3: squared error over n' = 0 … `most_components`, a curve for each method; the
+/// adaptive one, which is encoded anew for each n', at 1, 2, 4, 8.
 LinePlot error_over_components(const signal::TransferSignal& signal, int cluster_count,
                                int most_components);
 
