@@ -63,15 +63,19 @@ void draw_frames(benchmark::State& state, Draw draw, bool superclusters) {
   state.SetLabel(gl::description());
 }
 BENCHMARK_CAPTURE(draw_frames, compressed_single, Draw::single, false)
+    ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(draw_frames, compressed_clusters, Draw::clusters, false)
+    ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(draw_frames, compressed_superclusters, Draw::clusters, true)
+    ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(draw_frames, uncompressed, Draw::uncompressed, false)
+    ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
