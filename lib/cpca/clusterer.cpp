@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kPointBlock = 256;
 /// Clusters tried between full passes.
-constexpr std::size_t kNeighbours = 32;
+constexpr std::size_t kNeighbours = 16;
 
 }  // namespace
 

@@ -9,7 +9,9 @@ namespace prt::cpca {
 namespace {
 
 /// Power steps after a classification, and for clusters whose vectors start from nothing.
-constexpr int kSteps = 2, kFirstSteps = 8;
+constexpr int kSteps = 1, kFirstSteps = 8;
+/// Iterations in all coordinates at the end, where the others knew the first axes only.
+constexpr int kLastIterations = 4;
 
 }  // namespace
 
@@ -34,7 +36,16 @@ std::vector<Level> IterativeEncoder::run() {
     levels.push_back({.component_count = count, .errors = {}});
     run_level(levels.back());
   }
+  if (space_.use_signal()) refine(levels.back());
   return levels;
+}
+
+void IterativeEncoder::refine(Level& level) {
+  move_to_space(level.component_count);
+  for (int i = 0; i < kLastIterations; ++i) {
+    level.errors.push_back(clusterer_.classify(false).error);
+    update(level.component_count, kSteps);
+  }
 }
 
 /// One vector more, and one beyond it that is ready when its turn comes.
@@ -45,13 +56,18 @@ void IterativeEncoder::update(int count, int steps) {
 }
 
 void IterativeEncoder::start_level(int count, double error) {
-  int steps = kSteps;
   if (space_.fit_to(error)) {
-    clusterer_.set_rows(space_.rows());
-    steps = kFirstSteps;
+    move_to_space(count);
+  } else {
+    clusterer_.set_dimension(space_.dimension());
+    update(count, kSteps);
   }
+}
+
+void IterativeEncoder::move_to_space(int count) {
+  clusterer_.set_rows(space_.rows());
   clusterer_.set_dimension(space_.dimension());
-  update(count, steps);
+  update(count, kFirstSteps);
 }
 
 void IterativeEncoder::run_level(Level& level) {

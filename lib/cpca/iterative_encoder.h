@@ -29,6 +29,8 @@ class IterativeEncoder {
   void update(int count, int steps);
   void start_level(int count, double error);
   void run_level(Level& level);
+  void refine(Level& level);
+  void move_to_space(int count);
 
   const Options& options_;
   WorkingSpace space_;

@@ -31,16 +31,19 @@ WorkingSpace::WorkingSpace(std::span<const float> signal, std::size_t dimension,
 
 bool WorkingSpace::fit_to(double error) {
   if (axes_.tails.empty()) return false;
-  if (axes_.tails.back() > kLastTail * error) {
-    axes_ = {};
-    rows_.values = signal_.data();
-    rows_.stride = dimension_ = signal_dimension_;
-    return true;
-  }
+  if (axes_.tails.back() > kLastTail * error) return use_signal();
   std::size_t count = 0;
   while (count < axes_.count() && axes_.tails[count] > kTail * error) ++count;
   dimension_ = std::max<std::size_t>(count, 1);
   return false;
+}
+
+bool WorkingSpace::use_signal() {
+  if (axes_.tails.empty()) return false;
+  axes_ = {};
+  rows_.values = signal_.data();
+  rows_.stride = dimension_ = signal_dimension_;
+  return true;
 }
 
 std::vector<float> WorkingSpace::convert(std::span<const float> points) const {

@@ -22,6 +22,8 @@ class WorkingSpace {
 
   /// As many coordinates as an error calls for. True when rows() are others now.
   bool fit_to(double error);
+  /// All coordinates. True when rows() are others now.
+  bool use_signal();
 
   /// Points of the signal's coordinates (count × dimension) in those of rows(), stride of rows().
   std::vector<float> convert(std::span<const float> points) const;

@@ -1,0 +1,166 @@
+#include "cpca/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "cpca/figures.h"
+#include "cpca/stage_clock.h"
+
+namespace prt::cpca {
+
+namespace {
+
+constexpr int kSurveyIterations = 4, kMaxComponents = 24, kMaxEncodings = 3;
+constexpr std::size_t kLeastClusters = 8, kMostClusters = 4096, kPointsPerCluster = 12;
+/// Squared error of the iterative encoder over that of a static one, to begin with.
+constexpr double kFirstGain = 0.5;
+
+struct Choice {
+  int cluster_count = 0, component_count = 0;
+  double error = 0.0;  ///< relative, of the survey
+  std::size_t bytes = 0;
+
+  bool operator==(const Choice&) const = default;
+};
+
+double relative(double squared_error, double largest, const Figures& figures,
+                std::size_t point_count, Norm norm) {
+  if (figures.signal_energy <= 0.0) return 0.0;
+  return norm == Norm::rmse
+             ? std::sqrt(squared_error / figures.signal_energy)
+             : std::sqrt(largest * static_cast<double>(point_count) / figures.signal_energy);
+}
+
+std::size_t bytes_of(std::size_t point_count, int dimension, int cluster_count,
+                     int component_count) {
+  const auto n = static_cast<std::size_t>(dimension);
+  const auto components = static_cast<std::size_t>(component_count);
+  return 4 * (point_count * components +
+              static_cast<std::size_t>(cluster_count) * (components + 1) * n) +
+         (cluster_count <= 65536 ? 2 : 4) * point_count;
+}
+
+/// Errors of a static encoding with its first 0, 1, … vectors.
+void add_choices(const Encoding& encoding, std::span<const float> signal, Norm norm,
+                 std::vector<Choice>& choices) {
+  const std::vector<double> last = point_errors(encoding, signal);
+  const Figures figures = summarize(last, signal);
+  const auto count = static_cast<std::size_t>(encoding.component_count);
+  std::vector<double> errors = last;
+  for (int components = encoding.component_count; components >= 0; --components) {
+    double sum = 0.0, largest = 0.0;
+    for (std::size_t p = 0; p < errors.size(); ++p) {
+      sum += errors[p];
+      largest = std::max(largest, errors[p]);
+      if (components == 0) continue;
+      const double weight = encoding.weights[p * count + static_cast<std::size_t>(components) - 1];
+      errors[p] += weight * weight;
+    }
+    choices.push_back(
+        {encoding.cluster_count, components, relative(sum, largest, figures, errors.size(), norm),
+         bytes_of(encoding.point_count, encoding.dimension, encoding.cluster_count, components)});
+  }
+}
+
+std::vector<Choice> survey(std::span<const float> signal, int dimension, Norm norm,
+                           Options options) {
+  const std::size_t point_count = signal.size() / static_cast<std::size_t>(dimension);
+  const std::size_t most =
+      std::clamp<std::size_t>(point_count / kPointsPerCluster, 1, kMostClusters);
+  options.iterations = kSurveyIterations;
+  options.component_count = std::min(dimension, kMaxComponents);
+  std::vector<Choice> choices;
+  for (std::size_t clusters = std::min(kLeastClusters, most);; clusters *= 2) {
+    options.cluster_count = static_cast<int>(std::min(clusters, most));
+    add_choices(encode_static(signal, dimension, options).encoding, signal, norm, choices);
+    if (clusters >= most) return choices;
+  }
+}
+
+/// The best choice if the encoder's errors are `gain` times those of the survey; the one of least
+/// error if none keeps to an error bound.
+Choice choose(std::span<const Choice> choices, const Bound& bound, double gain) {
+  const auto by_error = [](const Choice& a, const Choice& b) {
+    return a.error != b.error ? a.error < b.error : a.bytes < b.bytes;
+  };
+  std::vector<Choice> within;
+  for (const Choice& choice : choices) {
+    if (bound.max_error ? choice.error * gain <= *bound.max_error
+                        : choice.bytes <= *bound.max_bytes) {
+      within.push_back(choice);
+    }
+  }
+  if (bound.max_error && within.empty()) {
+    return *std::min_element(choices.begin(), choices.end(), by_error);
+  }
+  if (within.empty()) {
+    const auto least = std::min_element(choices.begin(), choices.end(),
+                                        [](auto& a, auto& b) { return a.bytes < b.bytes; });
+    throw Error(ErrorKind::failed, "no encoding is as small",
+                {.found = fmt::format("at least {} bytes", least->bytes),
+                 .expected = fmt::format("at most {}", *bound.max_bytes)});
+  }
+  return bound.max_error ? *std::min_element(within.begin(), within.end(),
+                                             [](const Choice& a, const Choice& b) {
+                                               return a.bytes != b.bytes ? a.bytes < b.bytes
+                                                                         : a.error < b.error;
+                                             })
+                         : *std::min_element(within.begin(), within.end(), by_error);
+}
+
+}  // namespace
+
+double relative_error(const Encoding& encoding, std::span<const float> signal, Norm norm) {
+  const Figures figures = summarize(point_errors(encoding, signal), signal);
+  return relative(figures.squared_error, figures.max_point_error, figures, encoding.point_count,
+                  norm);
+}
+
+Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<const float> signal,
+                      int dimension, const Options& options) {
+  Options tried = options;
+  tried.cluster_count = 1;
+  tried.component_count = 0;
+  check_options(tried);
+  check_signal(signal, dimension, tried);
+  std::vector<Stage> stages;
+  StageClock clock(stages);
+  const std::vector<Choice> choices = survey(signal, dimension, bound.norm, options);
+  clock.finish("survey");
+  std::optional<Encoded> best;
+  double gain = std::sqrt(kFirstGain), least = std::numeric_limits<double>::infinity();
+  std::vector<Choice> done;
+  while (done.size() < (bound.max_error ? kMaxEncodings : 1)) {
+    const Choice choice = choose(choices, bound, gain);
+    if (std::find(done.begin(), done.end(), choice) != done.end()) break;
+    done.push_back(choice);
+    tried.cluster_count = choice.cluster_count;
+    tried.component_count = choice.component_count;
+    Encoded encoded = encoder(signal, dimension, tried);
+    for (const Stage& stage : encoded.stages) stages.push_back(stage);
+    const double error = relative_error(encoded.encoding, signal, bound.norm);
+    log::info("{} clusters, {} components: relative error {:.3g}, {} bytes", choice.cluster_count,
+              choice.component_count, error, storage_bytes(encoded.encoding));
+    least = std::min(least, error);
+    // A little more, as the next choice is not quite like this one.
+    if (choice.error > 0.0) gain = 1.02 * error / choice.error;
+    if (bound.max_error && error > *bound.max_error) continue;
+    if (best && storage_bytes(best->encoding) <= storage_bytes(encoded.encoding)) continue;
+    best = std::move(encoded);
+  }
+  if (!best) {
+    throw Error(ErrorKind::failed, "no encoding found within the error",
+                {.found = fmt::format("a relative error of {:.4g}", least),
+                 .expected = fmt::format("at most {:.4g}", *bound.max_error)});
+  }
+  best->stages = std::move(stages);
+  return std::move(*best);
+}
+
+}  // namespace prt::cpca
