@@ -29,14 +29,6 @@ struct Choice {
   bool operator==(const Choice&) const = default;
 };
 
-double relative(double squared_error, double largest, const Figures& figures,
-                std::size_t point_count, Norm norm) {
-  if (figures.signal_energy <= 0.0) return 0.0;
-  return norm == Norm::rmse
-             ? std::sqrt(squared_error / figures.signal_energy)
-             : std::sqrt(largest * static_cast<double>(point_count) / figures.signal_energy);
-}
-
 std::size_t bytes_of(std::size_t point_count, int dimension, int cluster_count,
                      int component_count) {
   const auto n = static_cast<std::size_t>(dimension);
@@ -44,6 +36,27 @@ std::size_t bytes_of(std::size_t point_count, int dimension, int cluster_count,
   return 4 * (point_count * components +
               static_cast<std::size_t>(cluster_count) * (components + 1) * n) +
          (cluster_count <= 65536 ? 2 : 4) * point_count;
+}
+
+/// As many more clusters as fit into the bytes.
+void fill(Choice& choice, std::size_t max_bytes, std::size_t point_count, int dimension) {
+  const auto bytes = [&](int clusters) {
+    return bytes_of(point_count, dimension, clusters, choice.component_count);
+  };
+  const std::size_t one = bytes(2) - bytes(1), used = bytes(choice.cluster_count);
+  const std::size_t most = std::min<std::size_t>(
+      point_count, static_cast<std::size_t>(choice.cluster_count) + (max_bytes - used) / one);
+  if (bytes(static_cast<int>(most)) > max_bytes) return;  // indices would be larger
+  choice.cluster_count = static_cast<int>(most);
+  choice.bytes = bytes(choice.cluster_count);
+}
+
+double relative(double squared_error, double largest, const Figures& figures,
+                std::size_t point_count, Norm norm) {
+  if (figures.signal_energy <= 0.0) return 0.0;
+  return norm == Norm::rmse
+             ? std::sqrt(squared_error / figures.signal_energy)
+             : std::sqrt(largest * static_cast<double>(point_count) / figures.signal_energy);
 }
 
 /// Errors of a static encoding with its first 0, 1, … vectors.
@@ -137,9 +150,13 @@ Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<cons
   double gain = std::sqrt(kFirstGain), least = std::numeric_limits<double>::infinity();
   std::vector<Choice> done;
   while (done.size() < (bound.max_error ? kMaxEncodings : 1)) {
-    const Choice choice = choose(choices, bound, gain);
+    Choice choice = choose(choices, bound, gain);
     if (std::find(done.begin(), done.end(), choice) != done.end()) break;
     done.push_back(choice);
+    if (bound.max_bytes) {
+      fill(choice, *bound.max_bytes, signal.size() / static_cast<std::size_t>(dimension),
+           dimension);
+    }
     tried.cluster_count = choice.cluster_count;
     tried.component_count = choice.component_count;
     Encoded encoded = encoder(signal, dimension, tried);

@@ -45,7 +45,7 @@ TEST(EncodeWithin, KeepsToTheBytes) {
     const Encoded encoded = encode_within({.max_error = {}, .max_bytes = max_bytes},
                                           counted.encoder, signal, kDimension, {});
     EXPECT_LE(storage_bytes(encoded.encoding), max_bytes);
-    EXPECT_GT(storage_bytes(encoded.encoding), max_bytes / 3);
+    EXPECT_GT(storage_bytes(encoded.encoding), max_bytes * 9 / 10);
     EXPECT_EQ(counted.encodings, 1);
     const double error = relative_error(encoded.encoding, signal, Norm::rmse);
     EXPECT_GT(error, last);  // more for fewer bytes
