@@ -31,9 +31,6 @@ std::size_t signal_bytes_limit() {
 }
 
 Input load(const Job& job, Report& report) {
-  for (const auto& path : {job.model, job.transfer, job.signal, job.coefficient_weights}) {
-    if (!path.empty()) report.add_input(path);
-  }
   const StageTimer timer(report, "load");
   Input input;
   if (job.signal.empty()) {
@@ -52,6 +49,10 @@ Input load(const Job& job, Report& report) {
         read_coefficient_scales(job.coefficient_weights, input.dimension, signal_bytes_limit());
   }
   if (job.weigh_by_area) input.point_weights = vertex_areas(input.scene);
+  // Only now, as it reads the files: those that are too large are refused before.
+  for (const auto& path : {job.model, job.transfer, job.signal, job.coefficient_weights}) {
+    if (!path.empty()) report.add_input(path);
+  }
   return input;
 }
 
