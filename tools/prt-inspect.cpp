@@ -3,7 +3,6 @@
 
 #include "cli/paths.h"
 #include "cli/tool.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "inspect/compare.h"
 #include "inspect/compression_error.h"
@@ -31,9 +30,10 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--transfer", options.transfer,
                  "Transfer that FILE was compressed from: reports the error, vertex by vertex")
       ->group("Compression error");
-  app.add_option("--plots", options.plots,
-                 "Existing folder for pictures (.png) and tables (.csv) of the "
-                 "clusters and, with --transfer, of the error and of other encodings")
+  app.add_option(
+         "--plots", options.plots,
+         "Folder, made when missing, for pictures (.png) and tables (.csv) of the clusters and, "
+         "with --transfer, of the error and of other encodings")
       ->group("Compression error");
   app.add_option("--compare", options.compare, "Two images, the second being the reference")
       ->expected(2)
@@ -70,26 +70,13 @@ void check_files(const Options& options, const cli::CommonOptions& common) {
   inputs.insert(inputs.end(), options.compare.begin(), options.compare.end());
   std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
+    inspect::make_plot_folder(options.plots);
     for (const std::string& name : inspect::plot_names(!options.transfer.empty())) {
       outputs.push_back({options.plots / (name + ".png"), {".png"}, {}});
       outputs.push_back({options.plots / (name + ".csv"), {".csv"}, {}});
     }
   }
   cli::check_paths(inputs, outputs, common);
-}
-
-void write_plots(const std::vector<inspect::Plot>& plots, const Options& options, bool no_clobber,
-                 Report& report) {
-  for (const inspect::Plot& plot : plots) {
-    const fs::path png = options.plots / (plot.name + ".png");
-    const fs::path csv = options.plots / (plot.name + ".csv");
-    image::write_image(png, plot.image, no_clobber);
-    AtomicFile file(csv, no_clobber);
-    file.write(plot.csv);
-    file.commit();
-    report.add_output(png);
-    report.add_output(csv);
-  }
 }
 
 bool inspect_one(const Options& options, bool no_clobber, Report& report, inspect::Json& json) {
@@ -102,15 +89,15 @@ bool inspect_one(const Options& options, bool no_clobber, Report& report, inspec
   }
   if (!options.plots.empty()) {
     const StageTimer timer(report, "plots");
-    write_plots(inspect::plots_of_model(options.file), options, no_clobber, report);
+    write_plots(inspect::plots_of_model(options.file), options.plots, no_clobber, report);
   }
   if (options.transfer.empty()) return true;
   const StageTimer timer(report, "compression error");
   report.add_input(options.transfer);
   json["compression_error"] = inspect::compression_error(options.file, options.transfer).json;
   if (!options.plots.empty()) {
-    write_plots(inspect::plots_of_compression(options.file, options.transfer), options, no_clobber,
-                report);
+    write_plots(inspect::plots_of_compression(options.file, options.transfer), options.plots,
+                no_clobber, report);
   }
   return true;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "cpca/overdraw.h"
 #include "cpca/superclusters.h"
@@ -110,6 +111,29 @@ std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
   plots.push_back(label_plot("clusters-reclassified", model.scene, study.reclassified));
   plots.push_back(label_plot("clusters-superclustered", model.scene, study.superclustered));
   return plots;
+}
+
+void make_plot_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw_failed("cannot make the folder for plots",
+                 {.file = folder.string(), .found = error.message()});
+  }
+}
+
+void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,
+                 bool no_clobber, Report& report) {
+  for (const Plot& plot : plots) {
+    const std::filesystem::path png = folder / (plot.name + ".png");
+    const std::filesystem::path csv = folder / (plot.name + ".csv");
+    image::write_image(png, plot.image, no_clobber);
+    AtomicFile file(csv, no_clobber);
+    file.write(plot.csv);
+    file.commit();
+    report.add_output(png);
+    report.add_output(csv);
+  }
 }
 
 std::vector<std::string> plot_names(bool with_transfer) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/report.h"
 #include "image/image.h"
 
 namespace prt::inspect {
@@ -26,6 +27,14 @@ std::vector<Plot> plots_of_model(const std::filesystem::path& model);
 /// model has.
 std::vector<Plot> plots_of_compression(const std::filesystem::path& model,
                                        const std::filesystem::path& transfer);
+
+/// Makes the folder for plots where it is missing, in a folder that exists. Throws Error (failed).
+void make_plot_folder(const std::filesystem::path& folder);
+
+/// Writes NAME.png and NAME.csv of each plot into the folder and adds them to the report's outputs.
+/// Throws Error (failed).
+void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,
+                 bool no_clobber, Report& report);
 
 /// Names of all files that the two can write, without extension.
 std::vector<std::string> plot_names(bool with_transfer);
