@@ -1,15 +1,17 @@
-// prt-transfer: per-vertex diffuse transfer of a model (docs/tools/prt-transfer.md).
+// prt-transfer: per-vertex transfer of a model, diffuse or glossy (docs/tools/prt-transfer.md).
 
 #include <map>
+#include <optional>
 
 #include "cli/paths.h"
 #include "cli/tool.h"
-#include "core/log.h"
+#include "core/error.h"
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "ray/engine.h"
-#include "signal/transfer_signal.h"
 #include "transfer/diffuse.h"
+#include "transfer/figures.h"
+#include "transfer/matrix.h"
 
 namespace {
 
@@ -19,6 +21,9 @@ struct Options {
   std::filesystem::path input, output;
   transfer::DiffuseOptions diffuse;
   bool unshadowed = false;
+  std::string mode = "diffuse";
+  std::optional<std::string> brdf;
+  std::optional<int> row_count;
 };
 
 void add_options(CLI::App& app, Options& options) {
@@ -55,24 +60,25 @@ void add_options(CLI::App& app, Options& options) {
       ->group("Transfer");
 }
 
-void add_figures(Report& report, const transfer::DiffuseStats& stats,
-                 const signal::TransferSignal& signal) {
-  nlohmann::ordered_json& json = report.json();
-  json["vertex_count"] = signal.vertex_count();
-  json["channel_count"] = signal.channel_count;
-  json["rays_cast"] = stats.rays_cast;
-  json["rays_per_second"] = stats.rays_per_second;
-  json["buried_vertex_count"] = stats.buried_vertex_count;
-  json["unrepaired_vertex_count"] = stats.unrepaired_vertex_count;
-  for (const transfer::DiffuseStats::Primitive& primitive : stats.primitives) {
-    json["meshes"].push_back({{"name", primitive.name},
-                              {"vertex_count", primitive.vertex_count},
-                              {"triangle_count", primitive.triangle_count},
-                              {"buried_vertex_count", primitive.buried_vertex_count}});
-  }
-  report.add_stage("build", stats.build_seconds);
-  report.add_stage("trace", stats.trace_seconds);
-  report.add_stage("bounce", stats.bounce_seconds);
+void add_matrix_options(CLI::App& app, Options& options) {
+  const auto group = [](CLI::Option* option) { return option->group("Glossy transfer"); };
+  group(app.add_option("--mode", options.mode, "diffuse: a vector a vertex; matrix: glossy"))
+      ->check(CLI::IsMember({"diffuse", "matrix"}))
+      ->capture_default_str();
+  group(app.add_option("--rows", options.row_count,
+                       "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"));
+  group(app.add_option("--brdf", options.brdf,
+                       std::string(brdf::kBrdfSyntax) + "; from-material if not given"));
+}
+
+void check_usage(const Options& options) {
+  const auto reject = [](const char* what) { throw Error(ErrorKind::usage, what); };
+  const bool matrix = options.mode == "matrix";
+  if (!matrix && options.row_count) reject("--rows needs --mode matrix");
+  if (!matrix && options.brdf) reject("--brdf needs --mode matrix");
+  if (matrix && options.diffuse.bounce_count > 0) reject("--bounces needs --mode diffuse");
+  if (options.brdf) brdf::parse_brdf(*options.brdf);
+  if (options.row_count) sh::hemisphere_functions(*options.row_count);
 }
 
 mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
@@ -81,27 +87,43 @@ mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
   return gltf::Document::load(path).scene();
 }
 
-void bake(const Options& options, const cli::CommonOptions& common, Report& report) {
+signal::TransferSignal bake_diffuse(const Options& options, const mesh::Scene& scene,
+                                    bool no_clobber, transfer::DiffuseStats& stats,
+                                    Report& report) {
+  signal::TransferSignal signal = transfer::compute_diffuse(scene, options.diffuse, stats);
+  const StageTimer timer(report, "save");
+  signal::write_transfer(options.output, signal, no_clobber);
+  return signal;
+}
+
+signal::TransferSignal bake_matrices(const Options& options, const mesh::Scene& scene,
+                                     bool no_clobber, transfer::DiffuseStats& stats,
+                                     Report& report) {
+  const transfer::DiffuseOptions& from = options.diffuse;
+  const transfer::MatrixTransfer transfer(
+      scene,
+      {options.brdf.value_or("from-material"), from.band_count, options.row_count.value_or(25),
+       from.ray_count, from.shadowed, from.channels, from.seed},
+      stats);
+  const StageTimer timer(report, "save");
+  signal::write_transfer(
+      options.output, transfer.header(),
+      [&](auto first, auto count, auto values) { transfer.compute(first, count, values); },
+      no_clobber);
+  return transfer.header();
+}
+
+void bake(Options& options, const cli::CommonOptions& common, Report& report) {
+  check_usage(options);
   cli::check_paths({options.input}, {{options.output, {".exr"}, {}}}, common);
   const mesh::Scene scene = load_scene(options.input, report);
-  transfer::DiffuseOptions diffuse = options.diffuse;
-  diffuse.shadowed = !options.unshadowed;
-  diffuse.seed = common.seed;
+  options.diffuse.shadowed = !options.unshadowed;
+  options.diffuse.seed = common.seed;
   transfer::DiffuseStats stats;
-  const signal::TransferSignal signal = transfer::compute_diffuse(scene, diffuse, stats);
-  add_figures(report, stats, signal);
-  if (stats.buried_vertex_count > 0) {
-    log::warning("{} of {} vertices are buried in other geometry; {} took their neighbours' values",
-                 stats.buried_vertex_count, signal.vertex_count(),
-                 stats.buried_vertex_count - stats.unrepaired_vertex_count);
-  }
-  {
-    const StageTimer timer(report, "save");
-    signal::write_transfer(options.output, signal, common.no_clobber);
-  }
+  const auto bake_mode = options.mode == "matrix" ? bake_matrices : bake_diffuse;
+  const signal::TransferSignal signal = bake_mode(options, scene, common.no_clobber, stats, report);
+  transfer::report_figures(report, stats, signal);
   report.add_output(options.output);
-  log::info("{} vertices, {:.1f} million rays, {:.1f} million a second", signal.vertex_count(),
-            1e-6 * static_cast<double>(stats.rays_cast), 1e-6 * stats.rays_per_second);
 }
 
 }  // namespace
@@ -109,10 +131,11 @@ void bake(const Options& options, const cli::CommonOptions& common, Report& repo
 int main(int argc, char** argv) {
   cli::Tool tool("prt-transfer",
                  "Computes how each vertex of a model turns distant light into exit radiance: "
-                 "shadows and interreflection, as spherical harmonic transfer vectors.",
+                 "shadows and interreflection, as spherical harmonic transfer vectors or matrices.",
                  "prt-transfer bunny.glb -o bunny.transfer.exr --bands 5 --rays 2048 --bounces 2");
   Options options;
   add_options(tool.app(), options);
+  add_matrix_options(tool.app(), options);
   tool.add_component("Embree", ray::embree_version);
   tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) { bake(options, tool.common(), report); });

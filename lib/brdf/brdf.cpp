@@ -58,29 +58,34 @@ double pdf(const Brdf& brdf, const Direction& light, const Direction& eye) {
 //   dielectric = (1 - w max(fr)) base/π + w fr S,  fr = f0 + (1 - f0) s,  w = specular
 //   metal      = (base + (1 - base) s) S
 // mixed by metallic; sorted here by the four lobes S (1-s), S s, (1-s)/π, s/π.
-Brdf make_brdf(const MetallicRoughness& material) {
+std::array<Colour, kMaterialLobeCount> material_colours(const MetallicRoughness& material) {
   const double eta = (1 - material.ior) / (1 + material.ior), w = material.specular;
   const auto limited = [&](double colour) { return std::min(1.0, eta * eta * colour); };
   const Colour& specular = material.specular_color;
   const Colour f0(limited(specular.x), limited(specular.y), limited(specular.z));
   const double f0_max = std::max({f0.x, f0.y, f0.z});
   const double metal = material.metallic, dielectric = 1 - metal;
-  const Colour facing = f0 * (dielectric * w) + material.base_color * metal;
-  const double grazing = dielectric * w + metal;
   const Colour base = material.base_color * dielectric;
+  return {f0 * (dielectric * w) + material.base_color * metal, Colour(dielectric * w + metal),
+          base * (1 - w * f0_max), base * (1 - w)};
+}
 
+std::array<LobePointer, kMaterialLobeCount> material_lobes(const MetallicRoughness& material) {
   const double alpha = std::clamp(material.roughness * material.roughness, kMinAlpha, 1.0);
   const double strength = material.has_anisotropy ? material.anisotropy_strength : 0;
   const double alpha_x = alpha + (1 - alpha) * strength * strength;
   const Masking masking = material.has_anisotropy ? Masking::height_correlated : Masking::separable;
-  const std::vector<WeightedLobe> all = {
-      {facing, ggx(alpha_x, alpha, Fresnel::facing, masking)},
-      {Colour(grazing), ggx(alpha_x, alpha, Fresnel::grazing, masking)},
-      {base * (1 - w * f0_max), lambert(Fresnel::facing)},
-      {base * (1 - w), lambert(Fresnel::grazing)}};
+  return {ggx(alpha_x, alpha, Fresnel::facing, masking),
+          ggx(alpha_x, alpha, Fresnel::grazing, masking), lambert(Fresnel::facing),
+          lambert(Fresnel::grazing)};
+}
+
+Brdf make_brdf(const MetallicRoughness& material) {
+  const auto colours = material_colours(material);
+  const auto lobes = material_lobes(material);
   Brdf brdf;
-  for (const WeightedLobe& term : all) {
-    if (term.colour != Colour(0)) brdf.lobes.push_back(term);
+  for (std::size_t i = 0; i < kMaterialLobeCount; ++i) {
+    if (colours[i] != Colour(0)) brdf.lobes.push_back({colours[i], lobes[i]});
   }
   if (brdf.lobes.empty()) brdf.lobes.push_back({Colour(0), lambert()});
   brdf.rotation = material.has_anisotropy ? material.anisotropy_rotation : 0;

@@ -1,6 +1,7 @@
 // Reflection models: coloured sums of lobes (brdf/lobe.h), from glTF materials or from text.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,11 @@ struct MetallicRoughness {
   double anisotropy_strength = 0;
   double anisotropy_rotation = 0;  ///< radians, counter-clockwise from the tangent
 };
+
+/// The four lobes of a material: make_brdf's terms, whose colours alone depend on the base colour.
+constexpr std::size_t kMaterialLobeCount = 4;
+std::array<LobePointer, kMaterialLobeCount> material_lobes(const MetallicRoughness& material);
+std::array<Colour, kMaterialLobeCount> material_colours(const MetallicRoughness& material);
 
 /// The material's BRDF by glTF 2.0 Appendix B with the formulas of the three extensions: at most
 /// four lobes. alpha = roughness² is at least kMinAlpha; masking is height-correlated where

@@ -29,8 +29,8 @@ Json make_material(State& state, const mesh::Material& material) {
   Json pbr{{"baseColorFactor",
             {material.base_color.x, material.base_color.y, material.base_color.z,
              material.base_color.w}},
-           {"metallicFactor", 0},
-           {"roughnessFactor", 1}};
+           {"metallicFactor", material.metallic},
+           {"roughnessFactor", material.roughness}};
   if (material.base_color_image >= 0) {
     Json& samplers = make_array(state.root, "samplers");
     Json& textures = make_array(state.root, "textures");

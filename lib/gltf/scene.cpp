@@ -25,6 +25,60 @@ mesh::Wrap read_wrap(int code) {
   }
 }
 
+// Factors of the extensions that shape reflection; a file can hold anything in their place.
+class Factors {
+ public:
+  Factors(const tinygltf::Material& material, const char* extension) {
+    const auto found = material.extensions.find(extension);
+    if (found != material.extensions.end() && found->second.IsObject()) object_ = &found->second;
+  }
+
+  explicit operator bool() const { return object_ != nullptr; }
+  bool has(const char* name) const { return object_ && object_->Has(name); }
+
+  float number(const char* name, float fallback, float low, float high) const {
+    return has(name) ? limit(object_->Get(name), fallback, low, high) : fallback;
+  }
+
+  Vec3 colour(const char* name) const {
+    Vec3 colour(1.0f);
+    if (!has(name)) return colour;
+    const tinygltf::Value& list = object_->Get(name);
+    for (std::size_t c = 0; c < 3 && list.IsArray() && list.ArrayLen() == 3; ++c) {
+      colour[static_cast<int>(c)] = limit(list.Get(c), 1.0f, 0.0f, 1e6f);
+    }
+    return colour;
+  }
+
+ private:
+  static float limit(const tinygltf::Value& value, float fallback, float low, float high) {
+    if (!value.IsNumber()) return fallback;
+    return std::clamp(static_cast<float>(value.GetNumberAsDouble()), low, high);
+  }
+
+  const tinygltf::Value* object_ = nullptr;
+};
+
+void read_reflection(const tinygltf::Material& from, mesh::Material& material) {
+  material.metallic =
+      std::clamp(static_cast<float>(from.pbrMetallicRoughness.metallicFactor), 0.0f, 1.0f);
+  material.roughness =
+      std::clamp(static_cast<float>(from.pbrMetallicRoughness.roughnessFactor), 0.0f, 1.0f);
+  material.ior = Factors(from, "KHR_materials_ior").number("ior", 1.5f, 0.0f, 1e6f);
+  if (material.ior > 0.0f) material.ior = std::max(material.ior, 1.0f);
+  const Factors specular(from, "KHR_materials_specular");
+  material.specular = specular.number("specularFactor", 1.0f, 0.0f, 1.0f);
+  material.specular_color = specular.colour("specularColorFactor");
+  const Factors anisotropy(from, "KHR_materials_anisotropy");
+  material.has_anisotropy = static_cast<bool>(anisotropy);
+  material.anisotropy_strength = anisotropy.number("anisotropyStrength", 0.0f, 0.0f, 1.0f);
+  material.anisotropy_rotation = anisotropy.number("anisotropyRotation", 0.0f, -1e3f, 1e3f);
+  material.has_unread_textures = from.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
+                                 specular.has("specularTexture") ||
+                                 specular.has("specularColorTexture") ||
+                                 anisotropy.has("anisotropyTexture");
+}
+
 class MaterialReader {
  public:
   MaterialReader(const Model& model, mesh::Scene& scene)
@@ -44,6 +98,7 @@ class MaterialReader {
     mesh::Material material;
     material.name = from.name;
     material.double_sided = from.doubleSided;
+    read_reflection(from, material);
     std::copy(pbr.baseColorFactor.begin(), pbr.baseColorFactor.end(), &material.base_color.x);
     if (pbr.baseColorTexture.index >= 0) {
       read_texture(pbr.baseColorTexture, material, model_.where("material", index));

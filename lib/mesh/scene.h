@@ -16,13 +16,22 @@ namespace prt::mesh {
 
 enum class Wrap { repeat, clamp, mirror };
 
-/// A Lambertian surface. prtkit's diffuse transfer ignores metalness.
+/// What a surface reflects, in glTF's terms. Diffuse transfer looks at the base colour only; the
+/// rest is for glossy transfer.
 struct Material {
   std::string name;
   Vec4 base_color{1.0f, 1.0f, 1.0f, 1.0f};  ///< linear factor
   int base_color_image = -1;                ///< index into Scene::images, -1: none
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
   bool double_sided = false;
+  float metallic = 0.0f, roughness = 1.0f;  ///< in [0, 1]
+  float ior = 1.5f;                         ///< >= 1, or 0 for infinity
+  float specular = 1.0f;                    ///< in [0, 1]
+  Vec3 specular_color{1.0f, 1.0f, 1.0f};    ///< >= 0
+  bool has_anisotropy = false;
+  float anisotropy_strength = 0.0f;  ///< in [0, 1]
+  float anisotropy_rotation = 0.0f;  ///< radians, counter-clockwise from the tangent
+  bool has_unread_textures = false;  ///< of these factors; only that of the base colour is read
 };
 
 struct Primitive {

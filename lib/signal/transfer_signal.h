@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,15 @@ struct TransferSignal {
 /// bytes. Throws Error (failed).
 void write_transfer(const std::filesystem::path& path, const TransferSignal& signal,
                     bool no_clobber = false);
+
+/// Rows of the vertices [first, first + count), count × dimension() values.
+using RowSource =
+    std::function<void(std::size_t first, std::size_t count, std::span<float> values)>;
+
+/// The same file of a signal that is never in memory as a whole: `signal.values` is not looked at,
+/// `rows` is asked for all vertices in order, a few thousand at a time.
+void write_transfer(const std::filesystem::path& path, const TransferSignal& signal,
+                    const RowSource& rows, bool no_clobber = false);
 
 /// Reads it back, bit for bit. Throws Error (bad_input), naming the file and what is wrong in it,
 /// before taking memory for values that would need more than `max_bytes`.

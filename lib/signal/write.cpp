@@ -53,13 +53,14 @@ Imf::Header make_header(const TransferSignal& signal, int width, int height) {
   return header;
 }
 
-void write_image(const std::filesystem::path& path, const TransferSignal& signal) {
+void write_image(const std::filesystem::path& path, const TransferSignal& signal,
+                 const RowSource& rows) {
   std::size_t width = 0;
   for (const auto& block : signal.blocks) width = std::max(width, block.vertex_count);
   width = std::min(width, kFileWidth);
   const std::vector<Scanline> lines = scanlines(signal.blocks, width);
   const auto dimension = static_cast<std::size_t>(signal.dimension());
-  std::vector<float> strip(kStripHeight * width * dimension);
+  std::vector<float> strip(kStripHeight * width * dimension), values;
 
   std::ofstream bytes(path, std::ios::binary);
   Imf::StdOFStream stream(bytes, path.c_str());
@@ -68,9 +69,13 @@ void write_image(const std::filesystem::path& path, const TransferSignal& signal
         stream, make_header(signal, static_cast<int>(width), static_cast<int>(lines.size())));
     for (std::size_t top = 0; top < lines.size(); top += kStripHeight) {
       const std::size_t bottom = std::min(lines.size(), top + kStripHeight);
+      const std::size_t first = lines[top].first;
+      const std::size_t end = lines[bottom - 1].first + lines[bottom - 1].count;
+      values.resize((end - first) * dimension);
+      rows(first, end - first, values);
       std::fill(strip.begin(), strip.end(), 0.0f);
       for (std::size_t line = top; line < bottom; ++line) {
-        std::copy_n(&signal.values[lines[line].first * dimension], lines[line].count * dimension,
+        std::copy_n(&values[(lines[line].first - first) * dimension], lines[line].count * dimension,
                     &strip[(line - top) * width * dimension]);
       }
       file.setFrameBuffer(strip_frame_buffer(signal, strip, {0, static_cast<int>(top)}, width));
@@ -85,12 +90,20 @@ void write_image(const std::filesystem::path& path, const TransferSignal& signal
 
 void write_transfer(const std::filesystem::path& path, const TransferSignal& signal,
                     bool no_clobber) {
+  const auto dimension = static_cast<std::size_t>(signal.dimension());
+  assert(signal.values.size() == signal.vertex_count() * dimension);
+  const RowSource rows = [&](std::size_t first, std::size_t count, std::span<float> values) {
+    std::copy_n(&signal.values[first * dimension], count * dimension, values.begin());
+  };
+  write_transfer(path, signal, rows, no_clobber);
+}
+
+void write_transfer(const std::filesystem::path& path, const TransferSignal& signal,
+                    const RowSource& rows, bool no_clobber) {
   assert(signal.vertex_count() > 0);
-  assert(signal.values.size() ==
-         signal.vertex_count() * static_cast<std::size_t>(signal.dimension()));
   AtomicFile output(path, no_clobber);
   try {
-    write_image(output.temporary_path(), signal);
+    write_image(output.temporary_path(), signal, rows);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {

@@ -133,6 +133,26 @@ TEST_F(TransferFile, SameSignalGivesSameBytes) {
   EXPECT_EQ(read_file(path("a.exr")), read_file(path("b.exr")));
 }
 
+TEST_F(TransferFile, RowsThatComeAsTheyAreAskedForGiveTheSameBytes) {
+  TransferSignal signal = make_signal(2, 4, 3, {5000, 3, 256, 700});
+  write_transfer(path("a.exr"), signal);
+  const std::vector<float> all = std::move(signal.values);
+  signal.values.clear();
+  const auto dimension = static_cast<std::size_t>(signal.dimension());
+  std::size_t next = 0, most = 0;
+  const RowSource rows = [&](std::size_t first, std::size_t count, std::span<float> values) {
+    EXPECT_EQ(first, next);
+    EXPECT_EQ(values.size(), count * dimension);
+    std::copy_n(&all[first * dimension], values.size(), values.begin());
+    next += count;
+    most = std::max(most, count);
+  };
+  write_transfer(path("b.exr"), signal, rows);
+  EXPECT_EQ(next, 5959u);
+  EXPECT_LE(most, 4096u);
+  EXPECT_EQ(read_file(path("a.exr")), read_file(path("b.exr")));
+}
+
 // Read with nothing but OpenEXR, as docs/transfer-file.md describes it.
 TEST_F(TransferFile, LiesAsDocumented) {
   const TransferSignal signal = make_signal(2, 1, 3, {300, 10});

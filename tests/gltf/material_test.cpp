@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "gltf/document.h"
+#include "gltf/samples.h"
+
+namespace prt::gltf {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// The sample scene with another JSON object as its second material, read back.
+mesh::Material read_material(const ordered_json& material) {
+  std::vector<std::byte> glb = Document::from_scene(samples::scene()).glb_bytes();
+  std::uint32_t size = 0;
+  std::memcpy(&size, &glb[12], 4);
+  ordered_json json = ordered_json::parse(std::string(reinterpret_cast<char*>(&glb[20]), size));
+  json["materials"][1] = material;
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::vector<std::byte> changed(glb.begin(), glb.begin() + 20);
+  const auto chars = std::as_bytes(std::span(text));
+  changed.insert(changed.end(), chars.begin(), chars.end());
+  changed.insert(changed.end(), glb.begin() + 20 + size, glb.end());
+  const auto total = static_cast<std::uint32_t>(changed.size());
+  const auto length = static_cast<std::uint32_t>(text.size());
+  std::memcpy(&changed[8], &total, 4);
+  std::memcpy(&changed[12], &length, 4);
+  return Document::parse(changed, "a.glb").scene().materials[1];
+}
+
+TEST(GltfMaterial, HasTheDefaultsOfTheSpecification) {
+  const mesh::Material material = read_material(ordered_json::object());
+  EXPECT_EQ(material.metallic, 1);
+  EXPECT_EQ(material.roughness, 1);
+  EXPECT_EQ(material.ior, 1.5f);
+  EXPECT_EQ(material.specular, 1);
+  EXPECT_EQ(material.specular_color, Vec3(1));
+  EXPECT_FALSE(material.has_anisotropy);
+  EXPECT_FALSE(material.has_unread_textures);
+}
+
+TEST(GltfMaterial, ReadsFactorsOfReflection) {
+  const mesh::Material material = read_material(ordered_json::parse(R"({
+    "pbrMetallicRoughness": {"metallicFactor": 0.25, "roughnessFactor": 0.5},
+    "extensions": {
+      "KHR_materials_ior": {"ior": 1.75},
+      "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.25, 2, 1]},
+      "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": -1.5}}})"));
+  EXPECT_EQ(material.metallic, 0.25f);
+  EXPECT_EQ(material.roughness, 0.5f);
+  EXPECT_EQ(material.ior, 1.75f);
+  EXPECT_EQ(material.specular, 0.5f);
+  EXPECT_EQ(material.specular_color, Vec3(0.25f, 2, 1));
+  EXPECT_TRUE(material.has_anisotropy);
+  EXPECT_EQ(material.anisotropy_strength, 0.75f);
+  EXPECT_EQ(material.anisotropy_rotation, -1.5f);
+}
+
+TEST(GltfMaterial, LimitsWhatIsOutOfRangeAndIgnoresWhatIsNoNumber) {
+  const mesh::Material wild = read_material(ordered_json::parse(R"({
+    "extensions": {
+      "KHR_materials_ior": {"ior": 0.5},
+      "KHR_materials_specular": {"specularFactor": 7, "specularColorFactor": [-1, 1e30, 1]},
+      "KHR_materials_anisotropy": {"anisotropyStrength": -3, "anisotropyRotation": 1e30}}})"));
+  EXPECT_EQ(wild.ior, 1);
+  EXPECT_EQ(wild.specular, 1);
+  EXPECT_EQ(wild.specular_color, Vec3(0, 1e6f, 1));
+  EXPECT_EQ(wild.anisotropy_strength, 0);
+  EXPECT_EQ(wild.anisotropy_rotation, 1e3f);
+  const mesh::Material odd = read_material(ordered_json::parse(R"({
+    "extensions": {
+      "KHR_materials_ior": [],
+      "KHR_materials_specular": {"specularFactor": "1", "specularColorFactor": [1, 2]},
+      "KHR_materials_anisotropy": {"anisotropyStrength": {}}}})"));
+  EXPECT_EQ(odd.ior, 1.5f);
+  EXPECT_EQ(odd.specular, 1);
+  EXPECT_EQ(odd.specular_color, Vec3(1));
+  EXPECT_EQ(odd.anisotropy_strength, 0);
+}
+
+TEST(GltfMaterial, SaysThatTexturesOfFactorsAreNotRead) {
+  EXPECT_TRUE(read_material(ordered_json::parse(R"({"pbrMetallicRoughness":
+    {"metallicRoughnessTexture": {"index": 0}}})"))
+                  .has_unread_textures);
+  EXPECT_TRUE(read_material(ordered_json::parse(R"({"extensions": {"KHR_materials_anisotropy":
+    {"anisotropyTexture": {"index": 0}}}})"))
+                  .has_unread_textures);
+}
+
+}  // namespace
+}  // namespace prt::gltf
