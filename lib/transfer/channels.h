@@ -2,9 +2,12 @@
 #pragma once
 
 #include "mesh/scene.h"
-#include "transfer/diffuse.h"
 
 namespace prt::transfer {
+
+/// `automatic`: three channels where any albedo is coloured, else one. `one` of a coloured albedo
+/// takes its luminance.
+enum class ChannelMode { automatic, one, three };
 
 /// 1 or 3. `between_vertices`: whether colours of textures count that no vertex has, as they do
 /// where hit points take part.

@@ -14,57 +14,24 @@
 #include "sh/basis.h"
 #include "transfer/buried.h"
 #include "transfer/clamped_cosine.h"
+#include "transfer/limits.h"
 #include "transfer/reflection.h"
 
 namespace prt::transfer {
 
 namespace {
 
-constexpr int kMaxRayCount = 1 << 17;
 constexpr int kMaxBounceRayCount = 1 << 14;  // a block's hits stay under 17 MB
 
 void check_options(const DiffuseOptions& options) {
-  const auto check = [](const char* name, int value, int low, int high) {
-    if (value >= low && value <= high) return;
-    throw Error(
-        ErrorKind::usage, fmt::format("{} out of range", name),
-        {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
-  };
-  check("band count", options.band_count, 1, sh::kMaxBandCount);
-  check("ray count", options.ray_count, 1, kMaxRayCount);
-  check("bounce count", options.bounce_count, 0, 1000);
-  check("bounce ray count", options.bounce_ray_count, 0, kMaxBounceRayCount);
+  check_range("band count", options.band_count, 1, sh::kMaxBandCount);
+  check_range("ray count", options.ray_count, 1, kMaxRayCount);
+  check_range("bounce count", options.bounce_count, 0, 1000);
+  check_range("bounce ray count", options.bounce_ray_count, 0, kMaxBounceRayCount);
   if (options.bounce_count > 0 && !options.shadowed) {
     throw Error(ErrorKind::usage, "bounces need shadows",
                 {.advice = "Leave out one of unshadowed and bounces."});
   }
-}
-
-bool is_coloured(const Vec3& albedo) { return albedo.x != albedo.y || albedo.y != albedo.z; }
-
-bool is_coloured(const image::Image& image) {
-  if (image.channel_count < 3) return false;
-  const auto step = static_cast<std::size_t>(image.channel_count);
-  for (std::size_t i = 0; i + 2 < image.pixels.size(); i += step) {
-    if (is_coloured(Vec3(image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]))) return true;
-  }
-  return false;
-}
-
-int choose_channel_count(const mesh::Scene& scene, const DiffuseOptions& options) {
-  if (options.channels != ChannelMode::automatic) {
-    return options.channels == ChannelMode::three ? 3 : 1;
-  }
-  for (const mesh::Primitive& primitive : scene.primitives) {
-    for (std::size_t v = 0; v < primitive.mesh.vertex_count(); ++v) {
-      if (is_coloured(mesh::albedo_at_vertex(scene, primitive, v))) return 3;
-    }
-  }
-  // Between the vertices a texture shows in bounces only.
-  const bool textured =
-      options.bounce_count > 0 && std::any_of(scene.images.begin(), scene.images.end(),
-                                              [](const image::Image& i) { return is_coloured(i); });
-  return textured ? 3 : 1;
 }
 
 /// Basis functions at all directions, a padded row a direction.
@@ -89,7 +56,7 @@ class DiffuseBake {
         coefficient_count_(static_cast<std::size_t>(sh::coefficient_count(options.band_count))) {
     stats_.build_seconds = watch_.seconds();
     signal_.band_count = options.band_count;
-    signal_.channel_count = choose_channel_count(scene, options);
+    signal_.channel_count = choose_channel_count(scene, options.channels, options.bounce_count > 0);
     signal_.seed = options.seed;
     signal_.ray_count = options.shadowed ? options.ray_count : 0;
     signal_.bounce_count = options.bounce_count;

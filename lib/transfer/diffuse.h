@@ -25,12 +25,9 @@
 
 #include "mesh/scene.h"
 #include "signal/transfer_signal.h"
+#include "transfer/channels.h"
 
 namespace prt::transfer {
-
-/// `automatic`: three channels where any albedo is coloured, else one. `one` of a coloured albedo
-/// takes its luminance.
-enum class ChannelMode { automatic, one, three };
 
 struct DiffuseOptions {
   int band_count = 5;    ///< of the light, 1 to sh::kMaxBandCount

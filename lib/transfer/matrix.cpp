@@ -14,6 +14,7 @@
 #include "sh/basis.h"
 #include "sh/rotation.h"
 #include "transfer/channels.h"
+#include "transfer/limits.h"
 #include "transfer/matrix_visibility.h"
 #include "transfer/reflection.h"
 
@@ -26,21 +27,13 @@ using linalg::MatrixD;
 using linalg::MatrixF;
 using linalg::Transpose;
 
-constexpr int kMaxRayCount = 1 << 17;
-
 std::size_t size_of(int band_count) {
   return static_cast<std::size_t>(sh::coefficient_count(band_count));
 }
 
 void check_options(const MatrixOptions& options) {
-  const auto check = [](const char* name, int value, int low, int high) {
-    if (value >= low && value <= high) return;
-    throw Error(
-        ErrorKind::usage, fmt::format("{} out of range", name),
-        {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
-  };
-  check("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
-  check("ray count", options.ray_count, 1, kMaxRayCount);
+  check_range("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
+  check_range("ray count", options.ray_count, 1, kMaxRayCount);
   sh::hemisphere_functions(options.row_count);
 }
 
