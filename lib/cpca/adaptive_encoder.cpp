@@ -58,7 +58,7 @@ class Adaptation {
     std::vector<double> variances(subspaces.cluster_count() * most_);
     for (std::size_t k = 0; k < subspaces.cluster_count(); ++k) {
       std::copy_n(&subspaces.variances[k * subspaces.capacity], subspaces.held[k],
-                  &variances[k * most_]);
+                  variances.begin() + static_cast<std::ptrdiff_t>(k * most_));
     }
     allocation_ = allocate(variances, most_, point_counts(clusterer_.points()), budget_);
     clusterer_.set_used(allocation_.counts);
