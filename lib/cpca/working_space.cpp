@@ -8,6 +8,9 @@ namespace {
 
 /// Signals of fewer coefficients are taken as they are.
 constexpr std::size_t kLeastDimension = 64;
+/// Beside the axes encoders keep this many numbers for each point: clusters, errors, orders. All
+/// together are half of the signal at most.
+constexpr std::size_t kOtherNumbers = 6;
 /// Of the error, what may lie outside the coordinates in use where there are more axes, and where
 /// there are none left.
 constexpr double kTail = 0.05, kLastTail = 0.25;
@@ -23,7 +26,8 @@ WorkingSpace::WorkingSpace(std::span<const float> signal, std::size_t dimension,
       rows_{signal.data(), signal.size() / dimension, dimension, weights},
       dimension_(dimension) {
   if (dimension < kLeastDimension) return;
-  axes_ = find_principal_axes(signal, dimension, dimension * 15 / 32, weights);
+  const std::size_t count = std::min(dimension * 15 / 32, dimension / 2 - kOtherNumbers);
+  axes_ = find_principal_axes(signal, dimension, count, weights);
   rows_.values = axes_.rows.data();
   rows_.stride = axes_.count();
   fit_to(kFirstError * axes_.tails[0]);
