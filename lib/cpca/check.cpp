@@ -20,12 +20,15 @@ void reject(const char* what, long found, const std::string& expected, const cha
 
 constexpr std::size_t kFinite = std::numeric_limits<std::size_t>::max();
 
-/// Index of the first value that is not finite.
+/// Squares of greater values, summed up, would leave the range of float.
+constexpr float kGreatest = 1e15f;
+
+/// Index of the first value that is not finite or too great.
 std::size_t first_bad_value(std::span<const float> signal) {
   std::atomic<std::size_t> first{kFinite};
   parallel_for(signal.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     const auto bad = std::find_if_not(&signal[begin], &signal[begin] + (end - begin),
-                                      [](float value) { return std::isfinite(value); });
+                                      [](float value) { return std::abs(value) <= kGreatest; });
     const auto index = static_cast<std::size_t>(bad - signal.data());
     if (index == end) return;
     std::size_t known = first.load();
@@ -65,10 +68,11 @@ void check_signal(std::span<const float> signal, int dimension, const Options& o
   const std::size_t bad = first_bad_value(signal);
   if (bad != kFinite) {
     const auto n = static_cast<std::size_t>(dimension);
-    throw_bad_input("the signal is not finite",
+    const bool finite = std::isfinite(signal[bad]);
+    throw_bad_input(finite ? "the signal is too great" : "the signal is not finite",
                     {.element = fmt::format("point {}, coefficient {}", bad / n, bad % n),
                      .found = fmt::format("{}", signal[bad]),
-                     .expected = "a number"});
+                     .expected = finite ? fmt::format("at most {}", kGreatest) : "a number"});
   }
 }
 

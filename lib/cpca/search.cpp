@@ -149,27 +149,44 @@ Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<cons
   std::optional<Encoded> best;
   double gain = std::sqrt(kFirstGain), least = std::numeric_limits<double>::infinity();
   std::vector<Choice> done;
-  while (done.size() < (bound.max_error ? kMaxEncodings : 1)) {
-    Choice choice = choose(choices, bound, gain);
+  Bound aim = bound;  // lower than max_bytes after an adaptive encoding of more vectors than chosen
+  while (done.size() < kMaxEncodings) {
+    Choice choice = choose(choices, aim, gain);
+    if (aim.max_bytes) {
+      fill(choice, *aim.max_bytes, signal.size() / static_cast<std::size_t>(dimension), dimension);
+    }
     if (std::find(done.begin(), done.end(), choice) != done.end()) break;
     done.push_back(choice);
-    if (bound.max_bytes) {
-      fill(choice, *bound.max_bytes, signal.size() / static_cast<std::size_t>(dimension),
-           dimension);
-    }
     tried.cluster_count = choice.cluster_count;
     tried.component_count = choice.component_count;
     Encoded encoded = encoder(signal, dimension, tried);
     for (const Stage& stage : encoded.stages) stages.push_back(stage);
     const double error = relative_error(encoded.encoding, signal, bound.norm);
+    const std::size_t bytes = storage_bytes(encoded.encoding);
     log::info("{} clusters, {} components: relative error {:.3g}, {} bytes", choice.cluster_count,
-              choice.component_count, error, storage_bytes(encoded.encoding));
+              choice.component_count, error, bytes);
+    if (bound.max_bytes) {
+      if (bytes > *bound.max_bytes) {
+        // Once more, smaller by as much as this is too large.
+        *aim.max_bytes = static_cast<std::size_t>(0.98 * static_cast<double>(*aim.max_bytes) *
+                                                  static_cast<double>(*bound.max_bytes) /
+                                                  static_cast<double>(bytes));
+        continue;
+      }
+      best = std::move(encoded);
+      break;
+    }
     least = std::min(least, error);
     // A little more, as the next choice is not quite like this one.
     if (choice.error > 0.0) gain = 1.02 * error / choice.error;
     if (bound.max_error && error > *bound.max_error) continue;
-    if (best && storage_bytes(best->encoding) <= storage_bytes(encoded.encoding)) continue;
+    if (best && storage_bytes(best->encoding) <= bytes) continue;
     best = std::move(encoded);
+  }
+  if (!best && bound.max_bytes) {
+    throw Error(ErrorKind::failed, "no encoding found that is as small",
+                {.expected = fmt::format("at most {} bytes", *bound.max_bytes),
+                 .advice = "Take --method iterative."});
   }
   if (!best) {
     throw Error(ErrorKind::failed, "no encoding found within the error",

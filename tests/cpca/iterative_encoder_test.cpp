@@ -121,6 +121,8 @@ TEST(IterativeEncoder, RefusesWhatStaticDoes) {
   EXPECT_THROW(encode_iterative(signal, 4, {.cluster_count = 2, .component_count = 5}), Error);
   signal[30] = std::nanf("");
   EXPECT_THROW(encode_iterative(signal, 4, {.cluster_count = 2, .component_count = 1}), Error);
+  signal[30] = -1e16f;  // its square is near the end of the range
+  EXPECT_THROW(encode_iterative(signal, 4, {.cluster_count = 2, .component_count = 1}), Error);
 }
 
 }  // namespace

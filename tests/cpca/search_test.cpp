@@ -53,6 +53,17 @@ TEST(EncodeWithin, KeepsToTheBytes) {
   }
 }
 
+// Small clusters have the most vectors, which take more room than the weights that pay for them.
+TEST(EncodeWithin, AdaptiveKeepsToTheBytesToo) {
+  const auto signal = make_uneven_signal(2000, kDimension, 4);
+  for (std::size_t max_bytes : {100000u, 50000u, 30000u}) {
+    const Encoded encoded = encode_within({.max_error = {}, .max_bytes = max_bytes},
+                                          encode_adaptive, signal, kDimension, {.iterations = 5});
+    EXPECT_LE(storage_bytes(encoded.encoding), max_bytes);
+    EXPECT_GT(storage_bytes(encoded.encoding), max_bytes / 2);
+  }
+}
+
 TEST(EncodeWithin, SaysWhatCannotBe) {
   const auto noise = random_values(300 * 100, 1);
   EXPECT_THROW(encode_within({.max_error = 1e-9, .max_bytes = {}}, encode_iterative, noise, 100,
