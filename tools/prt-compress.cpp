@@ -22,13 +22,14 @@ const std::map<std::string, std::optional<cpca::WeightFormat>> kWeights = {
     {"unorm16", cpca::WeightFormat::unorm16},
     {"unorm8", cpca::WeightFormat::unorm8}};
 
-void add_files(CLI::App& app, Job& job) {
+/// Returns the option of a signal without a model.
+CLI::Option* add_files(CLI::App& app, Job& job) {
   app.add_option("model", job.model, "The model that was baked (.glb, .gltf)");
   app.add_option("transfer", job.transfer, "Its transfer (.transfer.exr)");
   app.add_option("-o,--output", job.output, "The model with compressed transfer (.glb)");
-  app.add_option("--signal", job.signal,
-                 "In place of these: a matrix of float32 or float64, a point a row (.npy); only "
-                 "reports");
+  return app.add_option("--signal", job.signal,
+                        "In place of these: a matrix of float32 or float64, a point a row (.npy); "
+                        "only reports");
 }
 
 void add_method(CLI::App& app, Job& job) {
@@ -74,22 +75,26 @@ void add_bounds(CLI::App& app, cpca::Bound& bound) {
       ->excludes(max_error);
 }
 
-void add_storage(CLI::App& app, cpca::StorageOptions& options) {
+void add_storage(CLI::App& app, CLI::Option* signal, cpca::StorageOptions& options) {
   app.option_defaults()->group("Coherence and storage");
   auto* const incoherent = app.add_flag("--no-coherence", options.is_incoherent,
-                                        "Leave clusters as they are, without superclusters");
+                                        "Leave clusters as they are, without superclusters")
+                               ->excludes(signal);
   app.add_option("--error-budget", options.coherence.error_budget,
                  "Squared error that reclassification may add, as a share of what there is")
       ->check(CLI::Range(0.0, 1e6))
-      ->excludes(incoherent);
+      ->excludes(incoherent)
+      ->excludes(signal);
   app.add_option("--registers", options.coherence.register_budget,
                  "vec4 constants of the clusters that are drawn at a time")
       ->check(CLI::Range(1, 65536))
-      ->excludes(incoherent);
+      ->excludes(incoherent)
+      ->excludes(signal);
   app.add_option_function<std::string>(
          "--weights", [&](const std::string& name) { options.weights = kWeights.at(name); },
          "How weights are stored; auto: as small as adds under 1% to the squared error [auto]")
-      ->check(CLI::IsMember(kWeights));
+      ->check(CLI::IsMember(kWeights))
+      ->excludes(signal);
 }
 
 void log_summary(const nlohmann::ordered_json& json) {
@@ -108,10 +113,10 @@ int main(int argc, char** argv) {
   cli::Tool tool("prt-compress", "Compresses precomputed transfer by clustered PCA.",
                  "prt-compress a.glb a.transfer.exr -o a.prt.glb --clusters 256 --components 8");
   Job job;
-  add_files(tool.app(), job);
+  CLI::Option* const signal = add_files(tool.app(), job);
   add_method(tool.app(), job);
   add_bounds(tool.app(), job.bound);
-  add_storage(tool.app(), job.storage);
+  add_storage(tool.app(), signal, job.storage);
   tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) {
     job.seed = tool.common().seed;

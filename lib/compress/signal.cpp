@@ -32,7 +32,10 @@ std::vector<float> vertex_areas(const mesh::Scene& scene) {
     }
     first += mesh.vertex_count();
   }
-  if (!(total > 0.0)) throw_bad_input("the model has no area", {.advice = "Leave weights out."});
+  if (!(total > 0.0) || !std::isfinite(total)) {
+    throw_bad_input("the model has no area that is a number",
+                    {.found = fmt::format("{}", total), .advice = "Leave --point-weights out."});
+  }
   std::vector<float> weights;
   const double mean = total / static_cast<double>(areas.size());
   for (const double area : areas) weights.push_back(static_cast<float>(area / mean));

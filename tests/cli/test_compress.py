@@ -122,6 +122,10 @@ class Contradictions(ToolTest):
                 ("--max-error", "--max-error", 0.1, "--max-bytes", 1000),
                 ("--norm requires --max-error", "--norm", "max"),
                 ("needs a model", "--point-weights", "area"),
+                ("excludes", "--no-coherence"),
+                ("excludes", "--error-budget", 0.1),
+                ("excludes", "--registers", 64),
+                ("excludes", "--weights", "float"),
                 ("without a model", "-o", self.folder / "a.glb")):
             with self.subTest(options):
                 self.refused(WRONG_USAGE, pattern, "prt-compress", "--signal", signal, *options)
