@@ -46,6 +46,7 @@ void add_options(CLI::App& app, Options& options) {
       ->group("Transfer");
   app.add_flag("--unshadowed", options.unshadowed, "No rays: the closed form of a convex body")
       ->excludes(bounces)
+      ->excludes(rays)
       ->group("Transfer");
   const std::map<std::string, transfer::ChannelMode> modes = {
       {"auto", transfer::ChannelMode::automatic},

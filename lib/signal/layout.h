@@ -22,7 +22,6 @@ constexpr std::size_t kFileWidth = 256;
 /// What a file may not exceed.
 constexpr int kMaxBandCount = 31;
 constexpr int kMaxRowCount = 961;
-constexpr int kMaxDimension = 8192;
 constexpr std::size_t kMaxVertexCount = std::size_t{1} << 31;
 
 /// Scanlines that go through memory together.

@@ -12,6 +12,9 @@
 
 namespace prt::signal {
 
+/// Of signals in files.
+constexpr int kMaxDimension = 8192;
+
 /// Transfer of all vertices of a scene (numbered through). One vertex is one row of
 /// `dimension()` floats, ordered [channel][exit row][source coefficient]; diffuse transfer has one
 /// exit row. Maps source radiance coefficients (world frame) to exit radiance, albedo/pi included.

@@ -52,6 +52,13 @@ signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions
       has_coloured_specular(scene)) {
     header.channel_count = 3;
   }
+  if (header.dimension() > signal::kMaxDimension) {
+    throw Error(ErrorKind::usage, "transfer matrices too large for a file",
+                {.found = fmt::format("{} × {} × {} coefficients", header.channel_count,
+                                      header.row_count, size_of(header.band_count)),
+                 .expected = fmt::format("at most {}", signal::kMaxDimension),
+                 .advice = "Ask for fewer with --bands or --rows."});
+  }
   header.brdf = options.brdf;
   header.seed = options.seed;
   header.ray_count = options.shadowed ? options.ray_count : 0;

@@ -44,6 +44,7 @@ class Options(ToolTest):
         self.wrong("--channels", *transfer, "--channels", 2)
         self.wrong("--bounce-rays", *transfer, "--bounces", 1, "--bounce-rays", 16385)
         self.wrong("requires --bounces", *transfer, "--bounce-rays", 16)
+        self.wrong("excludes", *transfer, "--unshadowed")
         self.done(*transfer, "--bounces", 1, "--bounce-rays", 16384, "--channels", 1)
 
     def test_numbers_that_are_not_finite(self):
