@@ -1,10 +1,13 @@
 #include "compress/job.h"
 
+#include <fmt/format.h>
+
 #include <unistd.h>
 
 #include <cmath>
 
 #include "compress/signal.h"
+#include "core/error.h"
 #include "core/log.h"
 #include "cpca/report.h"
 #include "gltf/document.h"
@@ -69,11 +72,22 @@ cpca::Options make_options(const Job& job, const Input& input) {
   return options;
 }
 
+/// As gltf::stored_bytes counts; weights are as small as choose_weights nearly always makes them.
+cpca::StorageCost cost_in_file(const Job& job) {
+  const cpca::WeightFormat format = job.storage.weights.value_or(cpca::WeightFormat::unorm16);
+  return {.bytes_per_point = 4,
+          .bytes_per_weight = cpca::bytes_of(format),
+          .weight_group = job.method == "adaptive" ? 1u : 4u,
+          .bytes_per_cluster = 2 * sizeof(std::uint16_t)};
+}
+
 /// What reclassification and small weights may add to the error must fit below the bound as well.
 cpca::Bound bound_of_encoder(const Job& job) {
   constexpr double kWeightShare = 0.01;
   cpca::Bound bound = job.bound;
-  if (!bound.max_error || job.output.empty()) return bound;
+  if (job.output.empty()) return bound;
+  bound.cost = cost_in_file(job);
+  if (!bound.max_error) return bound;
   const double budget = job.storage.is_incoherent ? 0.0 : job.storage.coherence.error_budget;
   *bound.max_error /= std::sqrt((1.0 + budget) * (1.0 + kWeightShare));
   return bound;
@@ -117,6 +131,12 @@ void save(const Job& job, Input& input, const cpca::Storage& storage, cpca::Enco
   const std::size_t bytes = gltf::stored_bytes(transfer).total();  // the encoder's was an estimate
   json["bytes"] = bytes;
   json["compression_ratio"] = json["signal_bytes"].get<double>() / static_cast<double>(bytes);
+  if (job.bound.max_bytes && bytes > *job.bound.max_bytes) {
+    throw_failed("the weights take more room than the search allowed for",
+                 {.found = fmt::format("{} bytes", bytes),
+                  .expected = fmt::format("at most {}", *job.bound.max_bytes),
+                  .advice = "Add --weights unorm16 --no-coherence, or allow some more."});
+  }
   const StageTimer timer(report, "save");
   input.document->set_precomputed_transfer(transfer);
   input.document->save_glb(job.output, job.no_clobber);

@@ -17,7 +17,8 @@ namespace prt::cpca {
 namespace {
 
 constexpr int kSurveyIterations = 4, kMaxComponents = 24, kMaxEncodings = 3;
-constexpr std::size_t kLeastClusters = 8, kMostClusters = 4096, kPointsPerCluster = 12;
+constexpr std::size_t kLeastClusters = 8, kMostClusters = 4096, kPointsPerCluster = 12,
+                      kIndexedClusters = 65536;
 /// Squared error of the iterative encoder over that of a static one, to begin with.
 constexpr double kFirstGain = 0.5;
 
@@ -29,24 +30,41 @@ struct Choice {
   bool operator==(const Choice&) const = default;
 };
 
-std::size_t bytes_of(std::size_t point_count, int dimension, int cluster_count,
-                     int component_count) {
-  const auto n = static_cast<std::size_t>(dimension);
+std::size_t padded(std::size_t weight_count, const StorageCost& cost) {
+  return (weight_count + cost.weight_group - 1) / cost.weight_group * cost.weight_group;
+}
+
+std::size_t bytes_of(std::size_t point_count, int dimension, int cluster_count, int component_count,
+                     const StorageCost& cost) {
+  const auto clusters = static_cast<std::size_t>(cluster_count);
   const auto components = static_cast<std::size_t>(component_count);
-  return 4 * (point_count * components +
-              static_cast<std::size_t>(cluster_count) * (components + 1) * n) +
-         (cluster_count <= 65536 ? 2 : 4) * point_count;
+  return cost.total(point_count, point_count * padded(components, cost), clusters,
+                    clusters * components, static_cast<std::size_t>(dimension));
+}
+
+std::size_t bytes_of(const Encoding& encoding, const StorageCost& cost) {
+  std::size_t weights = 0, vectors = 0;
+  const auto count_of = [&](int cluster) {
+    return static_cast<std::size_t>(encoding.component_count_of(cluster));
+  };
+  for (int k = 0; k < encoding.cluster_count; ++k) vectors += count_of(k);
+  for (std::uint32_t cluster : encoding.cluster_of_point) {
+    weights += padded(count_of(static_cast<int>(cluster)), cost);
+  }
+  return cost.total(encoding.point_count, weights, static_cast<std::size_t>(encoding.cluster_count),
+                    vectors, static_cast<std::size_t>(encoding.dimension));
 }
 
 /// As many more clusters as fit into the bytes.
-void fill(Choice& choice, std::size_t max_bytes, std::size_t point_count, int dimension) {
+void fill(Choice& choice, std::size_t max_bytes, std::size_t point_count, int dimension,
+          const StorageCost& cost) {
   const auto bytes = [&](int clusters) {
-    return bytes_of(point_count, dimension, clusters, choice.component_count);
+    return bytes_of(point_count, dimension, clusters, choice.component_count, cost);
   };
   const std::size_t one = bytes(2) - bytes(1), used = bytes(choice.cluster_count);
   const std::size_t most = std::min<std::size_t>(
-      point_count, static_cast<std::size_t>(choice.cluster_count) + (max_bytes - used) / one);
-  if (bytes(static_cast<int>(most)) > max_bytes) return;  // indices would be larger
+      {point_count, kIndexedClusters,
+       static_cast<std::size_t>(choice.cluster_count) + (max_bytes - used) / one});
   choice.cluster_count = static_cast<int>(most);
   choice.bytes = bytes(choice.cluster_count);
 }
@@ -60,7 +78,7 @@ double relative(double squared_error, double largest, const Figures& figures,
 }
 
 /// Errors of a static encoding with its first 0, 1, … vectors.
-void add_choices(const Encoding& encoding, std::span<const float> signal, Norm norm,
+void add_choices(const Encoding& encoding, std::span<const float> signal, const Bound& bound,
                  std::vector<Choice>& choices) {
   const std::vector<double> last = point_errors(encoding, signal);
   const Figures figures = summarize(last, signal);
@@ -75,13 +93,14 @@ void add_choices(const Encoding& encoding, std::span<const float> signal, Norm n
       const double weight = encoding.weights[p * count + static_cast<std::size_t>(components) - 1];
       errors[p] += weight * weight;
     }
-    choices.push_back(
-        {encoding.cluster_count, components, relative(sum, largest, figures, errors.size(), norm),
-         bytes_of(encoding.point_count, encoding.dimension, encoding.cluster_count, components)});
+    choices.push_back({encoding.cluster_count, components,
+                       relative(sum, largest, figures, errors.size(), bound.norm),
+                       bytes_of(encoding.point_count, encoding.dimension, encoding.cluster_count,
+                                components, bound.cost)});
   }
 }
 
-std::vector<Choice> survey(std::span<const float> signal, int dimension, Norm norm,
+std::vector<Choice> survey(std::span<const float> signal, int dimension, const Bound& bound,
                            Options options) {
   const std::size_t point_count = signal.size() / static_cast<std::size_t>(dimension);
   const std::size_t most =
@@ -91,7 +110,7 @@ std::vector<Choice> survey(std::span<const float> signal, int dimension, Norm no
   std::vector<Choice> choices;
   for (std::size_t clusters = std::min(kLeastClusters, most);; clusters *= 2) {
     options.cluster_count = static_cast<int>(std::min(clusters, most));
-    add_choices(encode_static(signal, dimension, options).encoding, signal, norm, choices);
+    add_choices(encode_static(signal, dimension, options).encoding, signal, bound, choices);
     if (clusters >= most) return choices;
   }
 }
@@ -144,7 +163,7 @@ Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<cons
   check_signal(signal, dimension, tried);
   std::vector<Stage> stages;
   StageClock clock(stages);
-  const std::vector<Choice> choices = survey(signal, dimension, bound.norm, options);
+  const std::vector<Choice> choices = survey(signal, dimension, bound, options);
   clock.finish("survey");
   std::optional<Encoded> best;
   double gain = std::sqrt(kFirstGain), least = std::numeric_limits<double>::infinity();
@@ -153,7 +172,8 @@ Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<cons
   while (done.size() < kMaxEncodings) {
     Choice choice = choose(choices, aim, gain);
     if (aim.max_bytes) {
-      fill(choice, *aim.max_bytes, signal.size() / static_cast<std::size_t>(dimension), dimension);
+      fill(choice, *aim.max_bytes, signal.size() / static_cast<std::size_t>(dimension), dimension,
+           bound.cost);
     }
     if (std::find(done.begin(), done.end(), choice) != done.end()) break;
     done.push_back(choice);
@@ -162,7 +182,7 @@ Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<cons
     Encoded encoded = encoder(signal, dimension, tried);
     for (const Stage& stage : encoded.stages) stages.push_back(stage);
     const double error = relative_error(encoded.encoding, signal, bound.norm);
-    const std::size_t bytes = storage_bytes(encoded.encoding);
+    const std::size_t bytes = bytes_of(encoded.encoding, bound.cost);
     log::info("{} clusters, {} components: relative error {:.3g}, {} bytes", choice.cluster_count,
               choice.component_count, error, bytes);
     if (bound.max_bytes) {
@@ -180,7 +200,7 @@ Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<cons
     // A little more, as the next choice is not quite like this one.
     if (choice.error > 0.0) gain = 1.02 * error / choice.error;
     if (bound.max_error && error > *bound.max_error) continue;
-    if (best && storage_bytes(best->encoding) <= bytes) continue;
+    if (best && bytes_of(best->encoding, bound.cost) <= bytes) continue;
     best = std::move(encoded);
   }
   if (!best && bound.max_bytes) {
