@@ -147,8 +147,8 @@ class Model(ToolTest):
         report = self.folder / "c.json"
         for weights in ("auto", "float"):
             self.done("prt-compress", glb, transfer, "-o", self.folder / f"{weights}.glb",
-                      "--max-bytes", 60000, "--weights", weights, "--report", self.report)
-            self.assertLessEqual(self.load(self.report)["bytes"], 60000)
+                      "--max-bytes", 60000, "--weights", weights, "--report", report)
+            self.assertLessEqual(self.load(report)["bytes"], 60000)
         self.done("prt-compress", glb, transfer, "-o", self.folder / "b.glb", "--max-error", 0.05,
                   "--report", report)
         self.assertLessEqual(self.load(report)["relative_rmse"], 0.05)
