@@ -6,6 +6,7 @@
 
 #include "cli/paths.h"
 #include "cli/tool.h"
+#include "cli/vector_option.h"
 #include "gl/context.h"
 #include "ray/engine.h"
 #include "runtime/reference/reference_job.h"
@@ -27,21 +28,6 @@ const std::map<std::string, Show> kShows = {{"radiance", Show::radiance},
 const std::map<std::string, Background> kBackgrounds = {{"environment", Background::environment},
                                                         {"color", Background::color},
                                                         {"none", Background::none}};
-
-/// --name X,Y,Z
-template <class Vector>
-void add_vector(CLI::App& app, const char* name, Vector& value, const std::string& description) {
-  app.add_option_function<std::vector<float>>(
-         name,
-         [&value, name](const std::vector<float>& v) {
-           if (v.size() != 3) throw CLI::ValidationError(name, "expected X,Y,Z");
-           value = prt::Vec3(v[0], v[1], v[2]);
-         },
-         description)
-      ->delimiter(',')
-      ->expected(3)
-      ->type_name("X,Y,Z");
-}
 
 template <class Enum, class Value>
 void add_choice(CLI::App& app, const char* name, Value& value,
@@ -67,9 +53,9 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
                  "Turn the light about +Y, degrees, counter-clockwise from above");
 
   app.option_defaults()->group("Camera");
-  add_vector(app, "--eye", options.eye, "Where the camera stands [frames the model]");
-  add_vector(app, "--target", options.target, "What it looks at [the model's middle]");
-  add_vector(app, "--up", options.up, "Up in the picture [0,1,0]");
+  prt::cli::add_vector(app, "--eye", options.eye, "Where the camera stands [frames the model]");
+  prt::cli::add_vector(app, "--target", options.target, "What it looks at [the model's middle]");
+  prt::cli::add_vector(app, "--up", options.up, "Up in the picture [0,1,0]");
   app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees");
 
   app.option_defaults()->group("Picture");
@@ -86,7 +72,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--exposure", options.exposure, "Stops, for .png");
   add_choice(app, "--background", options.background, kBackgrounds,
              "Behind the model [environment]");
-  add_vector(app, "--background-color", options.background_color, "Linear [0.1,0.1,0.1]");
+  prt::cli::add_vector(app, "--background-color", options.background_color, "Linear [0.1,0.1,0.1]");
 }
 
 void add_render_options(CLI::App& app, prt::runtime::RenderOptions& options) {
