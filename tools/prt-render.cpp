@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "brdf/brdf.h"
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "cli/vector_option.h"
@@ -92,6 +93,10 @@ void add_reference_options(CLI::App& app, prt::runtime::ReferenceOptions& option
   app.option_defaults()->group("Reference");
   CLI::Option* const flag = app.add_flag("--reference", reference,
                                          "Path trace instead: ground truth, no transfer needed");
+  app.add_option("--brdf", options.brdf,
+                 std::string(prt::brdf::kBrdfSyntax) +
+                     "; the one that the transfer was baked with, else lambert, if not given")
+      ->needs(flag);
   app.add_option("--samples", options.sample_count, "Paths in a pixel")
       ->check(CLI::Range(1, 1 << 20))
       ->needs(flag);

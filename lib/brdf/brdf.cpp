@@ -13,45 +13,62 @@ Direction turned(const Direction& w, double angle) {
   return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
 }
 
-double weight(const WeightedLobe& term, const Direction& eye) {
+std::vector<Term> terms_of(const Brdf& brdf) {
+  std::vector<Term> terms;
+  for (const WeightedLobe& from : brdf.lobes) terms.push_back({from.colour, from.lobe.get()});
+  return terms;
+}
+
+double weight(const Term& term, const Direction& eye) {
   return std::max({term.colour.x, term.colour.y, term.colour.z}) * term.lobe->importance(eye);
 }
 
-double total_weight(const Brdf& brdf, const Direction& eye) {
+double total_weight(std::span<const Term> terms, const Direction& eye) {
   double sum = 0;
-  for (const WeightedLobe& term : brdf.lobes) sum += weight(term, eye);
+  for (const Term& term : terms) sum += weight(term, eye);
   return sum;
 }
 
 }  // namespace
 
-Colour evaluate(const Brdf& brdf, const Direction& light, const Direction& eye) {
-  const Direction l = turned(light, -brdf.rotation), e = turned(eye, -brdf.rotation);
+Colour evaluate(std::span<const Term> terms, const Direction& light, const Direction& eye) {
   Colour sum(0, 0, 0);
-  for (const WeightedLobe& term : brdf.lobes) sum += term.colour * term.lobe->evaluate(l, e);
+  for (const Term& term : terms) sum += term.colour * term.lobe->evaluate(light, eye);
   return sum;
 }
 
 // Black materials reflect nothing whatever the direction: the last lobe is as good as any.
-Direction sample(const Brdf& brdf, const Direction& eye, double u0, double u1, double u2) {
-  const Direction e = turned(eye, -brdf.rotation);
-  double rest = u0 * total_weight(brdf, e);
+Direction sample(std::span<const Term> terms, const Direction& eye, double u0, double u1,
+                 double u2) {
+  double rest = u0 * total_weight(terms, eye);
   std::size_t chosen = 0;
-  while (chosen + 1 < brdf.lobes.size()) {
-    rest -= weight(brdf.lobes[chosen], e);
+  while (chosen + 1 < terms.size()) {
+    rest -= weight(terms[chosen], eye);
     if (rest < 0) break;
     ++chosen;
   }
-  return turned(brdf.lobes[chosen].lobe->sample(e, u1, u2), brdf.rotation);
+  return terms[chosen].lobe->sample(eye, u1, u2);
+}
+
+double pdf(std::span<const Term> terms, const Direction& light, const Direction& eye) {
+  const double total = total_weight(terms, eye);
+  if (total <= 0) return terms.back().lobe->pdf(light, eye);
+  double sum = 0;
+  for (const Term& term : terms) sum += weight(term, eye) * term.lobe->pdf(light, eye);
+  return sum / total;
+}
+
+Colour evaluate(const Brdf& brdf, const Direction& light, const Direction& eye) {
+  return evaluate(terms_of(brdf), turned(light, -brdf.rotation), turned(eye, -brdf.rotation));
+}
+
+Direction sample(const Brdf& brdf, const Direction& eye, double u0, double u1, double u2) {
+  const Direction e = turned(eye, -brdf.rotation);
+  return turned(sample(terms_of(brdf), e, u0, u1, u2), brdf.rotation);
 }
 
 double pdf(const Brdf& brdf, const Direction& light, const Direction& eye) {
-  const Direction l = turned(light, -brdf.rotation), e = turned(eye, -brdf.rotation);
-  const double total = total_weight(brdf, e);
-  if (total <= 0) return brdf.lobes.back().lobe->pdf(l, e);
-  double sum = 0;
-  for (const WeightedLobe& term : brdf.lobes) sum += weight(term, e) * term.lobe->pdf(l, e);
-  return sum / total;
+  return pdf(terms_of(brdf), turned(light, -brdf.rotation), turned(eye, -brdf.rotation));
 }
 
 // With specular_brdf S and s = (1 - VdotH)^5, Appendix B and the extensions say

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -23,11 +24,23 @@ struct Brdf {
   double rotation = 0;
 };
 
-/// Σ colour · lobe, 1/sr, in the frame of normal and tangent.
-Colour evaluate(const Brdf& brdf, const Direction& light, const Direction& eye);
+/// A coloured lobe that someone else owns: a sum of them is made for each point without cost.
+struct Term {
+  Colour colour{0, 0, 0};
+  const Lobe* lobe = nullptr;
+};
+
+/// Σ colour · lobe, 1/sr, in the lobes' frame. At least one term, as in all that follow.
+Colour evaluate(std::span<const Term> terms, const Direction& light, const Direction& eye);
 
 /// A direction to the light: a lobe is chosen by u0 (brightest channel of its colour times its
 /// importance), sampled by u1 and u2. As Lobe::sample, it can be below the surface.
+Direction sample(std::span<const Term> terms, const Direction& eye, double u0, double u1,
+                 double u2);
+double pdf(std::span<const Term> terms, const Direction& light, const Direction& eye);
+
+/// The same of a whole BRDF, in the frame of normal and tangent.
+Colour evaluate(const Brdf& brdf, const Direction& light, const Direction& eye);
 Direction sample(const Brdf& brdf, const Direction& eye, double u0, double u1, double u2);
 double pdf(const Brdf& brdf, const Direction& light, const Direction& eye);
 

@@ -38,7 +38,7 @@ Result trace(const mesh::Scene& scene, const camera::Camera& camera,
   result.sample_count =
       (options.sample_count + kReplicateCount - 1) / kReplicateCount * kReplicateCount;
   const Stopwatch build;
-  const SurfaceLookup surfaces(scene);
+  const SurfaceLookup surfaces(scene, options.brdf);
   const auto engine = ray::make_embree_engine(surfaces.triangles());
   result.build_seconds = build.seconds();
 

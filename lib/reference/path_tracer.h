@@ -1,15 +1,17 @@
-// Ground truth for the diffuse bake: an unbiased path tracer with the bake's model of light.
+// Ground truth for the bakes: an unbiased path tracer with their model of light.
 //
-// The model. Surfaces are Lambertian: radiance leaving is albedo/pi times irradiance, and
-// irradiance is gathered over the hemisphere around the interpolated vertex normal, whose cosine
-// weights it. Rays leave the flat triangle on the side of that normal; the ones that dip below the
-// triangle's plane hit it, as in the bake they hit a vertex's own faces. Anything in the way
+// The model. Surfaces reflect by a BRDF of lib/brdf about the interpolated vertex normal, which is
+// both the middle of the hemisphere that light comes from and the axis of its cosine; an
+// anisotropic BRDF is turned by the interpolated frames of the vertices (mesh/frame.h). Rays leave
+// the flat triangle on the side of that normal; the ones that dip below the triangle's plane hit
+// it, as in the bake they hit a vertex's own faces. Where the eye is below the horizon of the
+// interpolated normal, at outlines, the surface is seen as from its horizon. Anything in the way
 // blocks, seen from the front or from behind. What is hit from the front reflects; what is hit from
 // behind reflects nothing (black), even where the material is double-sided: a vertex has one normal
 // and transfer knows its side alone. `bounce_count` interreflections are followed, exactly: 0 is
 // direct light only, and no path is cut short at random.
 //
-// The estimator. Directions are drawn by the cosine, one ray a vertex of the path. Peaked lights
+// The estimator. Directions are drawn from the BRDF, one ray a vertex of the path. Peaked lights
 // (whole maps) are sampled as well, and both are combined by the balance heuristic [Veach 1997
 // §9.2]. Band-limited light may be negative and is never clamped. Samples of a pixel are two
 // independently scrambled Sobol' sets; how far their means lie apart gives the standard error,
@@ -17,6 +19,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "camera/camera.h"
 #include "image/image.h"
@@ -36,6 +39,7 @@ enum class PixelFilter {
 };
 
 struct Options {
+  std::string brdf = "lambert";     ///< by brdf::kBrdfSyntax; its factor is the albedo
   int width = 1024, height = 1024;  ///< pixels; camera.aspect should be their ratio
   int sample_count = 256;           ///< paths a pixel; rounded up to a multiple of kReplicateCount
   int bounce_count = 2;             ///< interreflections
@@ -55,7 +59,7 @@ struct Result {
 
 /// The same image for the same arguments, whatever the number of threads. Scratch memory is a few
 /// megabytes a thread beside the scene's triangles and the two images. Throws Error (usage) when a
-/// count or size is out of range, Error (bad_input) from the ray engine.
+/// count or size is out of range or there is no such BRDF, Error (bad_input) from the ray engine.
 Result trace(const mesh::Scene& scene, const camera::Camera& camera,
              const Illumination& illumination, const Options& options);
 

@@ -3,11 +3,17 @@
 #include <ImathBox.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "brdf/scene_material.h"
 
 namespace prt::reference {
 
 namespace {
+
+/// Cosine that eyes are raised to: BRDFs are 0 on the horizon itself.
+constexpr float kHorizon = 1e-3f;
 
 Vec3 interpolate(const Vec3& a, const Vec3& b, const Vec3& c, float u, float v) {
   return a * (1.0f - u - v) + b * u + c * v;
@@ -17,15 +23,58 @@ float largest_coordinate(const Vec3& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 }
 
+/// Any frame around a unit normal [Duff et al. 2017].
+mesh::Frame frame_around(const Vec3& n) {
+  const float sign = std::copysign(1.0f, n.z);
+  const float a = -1.0f / (sign + n.z);
+  const float b = n.x * n.y * a;
+  return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+
+/// The vertices' frames, interpolated and made orthonormal around the unit normal.
+mesh::Frame tangent_frame(const mesh::TriangleMesh& mesh,
+                          const std::array<std::uint32_t, 3>& corners, float u, float v,
+                          const Vec3& normal) {
+  const mesh::Frame a = mesh::frame_at_vertex(mesh, corners[0]),
+                    b = mesh::frame_at_vertex(mesh, corners[1]),
+                    c = mesh::frame_at_vertex(mesh, corners[2]);
+  Vec3 x = interpolate(a.x, b.x, c.x, u, v);
+  x = (x - normal * normal.dot(x)).normalized();
+  if (x == Vec3(0.0f)) return frame_around(normal);
+  const Vec3 y = normal.cross(x);
+  return {x, y.dot(interpolate(a.y, b.y, c.y, u, v)) < 0.0f ? -y : y, normal};
+}
+
+mesh::Frame turned(const mesh::Frame& frame, float angle) {
+  const float c = std::cos(angle), s = std::sin(angle);
+  return {frame.x * c + frame.y * s, frame.y * c - frame.x * s, frame.z};
+}
+
 }  // namespace
 
-SurfaceLookup::SurfaceLookup(const mesh::Scene& scene) : scene_(scene) {
-  positions_.reserve(scene.vertex_count());
-  indices_.reserve(3 * scene.triangle_count());
-  primitive_of_triangle_.reserve(scene.triangle_count());
+SurfaceLookup::SurfaceLookup(const mesh::Scene& scene, std::string_view brdf) : scene_(scene) {
+  make_reflectors(brdf);
+  add_triangles();
+}
+
+void SurfaceLookup::make_reflectors(std::string_view text) {
+  if (const auto brdf = brdf::parse_brdf(text)) {
+    reflectors_.assign(scene_.materials.size() + 1, Reflector(*brdf));
+    return;
+  }
+  for (const mesh::Material& material : scene_.materials) {
+    reflectors_.emplace_back(brdf::metallic_roughness(material));
+  }
+  reflectors_.emplace_back(brdf::metallic_roughness({}));
+}
+
+void SurfaceLookup::add_triangles() {
+  positions_.reserve(scene_.vertex_count());
+  indices_.reserve(3 * scene_.triangle_count());
+  primitive_of_triangle_.reserve(scene_.triangle_count());
   Imath::Box3f box;
-  for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-    const mesh::TriangleMesh& mesh = scene.primitives[p].mesh;
+  for (std::size_t p = 0; p < scene_.primitives.size(); ++p) {
+    const mesh::TriangleMesh& mesh = scene_.primitives[p].mesh;
     const auto first_vertex = static_cast<std::uint32_t>(positions_.size());
     first_triangle_.push_back(static_cast<std::uint32_t>(primitive_of_triangle_.size()));
     positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
@@ -38,7 +87,8 @@ SurfaceLookup::SurfaceLookup(const mesh::Scene& scene) : scene_(scene) {
   for (Vec3& position : positions_) position -= centre_;
 }
 
-std::optional<SurfacePoint> SurfaceLookup::surface_at(const ray::Hit& hit) const {
+std::optional<SurfacePoint> SurfaceLookup::surface_at(const ray::Hit& hit,
+                                                      const Vec3& direction) const {
   if (hit.back_face) return std::nullopt;
   const std::uint32_t primitive_index = primitive_of_triangle_[hit.triangle];
   const mesh::Primitive& primitive = scene_.primitives[primitive_index];
@@ -56,9 +106,22 @@ std::optional<SurfacePoint> SurfaceLookup::surface_at(const ray::Hit& hit) const
   if (geometric_normal.dot(normal) < 0.0f) geometric_normal.negate();
   const float magnitude =
       std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
-  const Vec3 position = interpolate(a, b, c, hit.u, hit.v);
-  return SurfacePoint{ray::offset_origin(position, geometric_normal, magnitude), normal,
-                      mesh::albedo_at_point(scene_, primitive, triangle, hit.u, hit.v)};
+
+  SurfacePoint point;
+  point.origin =
+      ray::offset_origin(interpolate(a, b, c, hit.u, hit.v), geometric_normal, magnitude);
+  point.reflector = primitive.material < 0
+                        ? &reflectors_.back()
+                        : &reflectors_[static_cast<std::size_t>(primitive.material)];
+  point.frame = point.reflector->is_isotropic()
+                    ? frame_around(normal)
+                    : turned(tangent_frame(primitive.mesh, corners, hit.u, hit.v, normal),
+                             point.reflector->rotation());
+  point.eye = point.local_from_world(-direction);
+  point.eye.z = std::max(point.eye.z, kHorizon);
+  point.eye.normalize();
+  point.albedo = mesh::albedo_at_point(scene_, primitive, triangle, hit.u, hit.v);
+  return point;
 }
 
 }  // namespace prt::reference

@@ -1,45 +1,66 @@
-// What a ray has hit: the point, its normal and albedo, in the terms of the diffuse bake.
+// What a ray has hit: the point, its frame and what it reflects, in the terms of the bake.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
+#include "mesh/frame.h"
 #include "mesh/scene.h"
 #include "ray/engine.h"
+#include "reference/reflector.h"
 
 namespace prt::reference {
 
-/// A point that reflects. Directions of incoming light are those of the hemisphere around `normal`,
-/// the normalised interpolation of the vertex normals, weighted by the cosine to it.
+/// A point that reflects. Incoming light is that of the hemisphere around the shading normal,
+/// weighted by the cosine to it.
 struct SurfacePoint {
-  Vec3 origin;  ///< where its rays start: just off the triangle, on the side of `normal`; relative
-                ///< to the scene's centre
-  Vec3 normal;
+  Vec3 origin;  ///< where its rays start: just off the triangle, on the side of the normal;
+                ///< relative to the scene's centre
+  /// z is the shading normal, the normalised interpolation of the vertices'; x and y are the axes
+  /// of the lobes, of interpolated tangents where the BRDF is anisotropic. May be left-handed.
+  mesh::Frame frame;
+  /// Where it is seen from, unit length, in the frame. An eye below the horizon of the shading
+  /// normal is raised to it.
+  Vec3 eye;
   Vec3 albedo;
+  const Reflector* reflector;
+
+  Vec3 local_from_world(const Vec3& w) const {
+    return {w.dot(frame.x), w.dot(frame.y), w.dot(frame.z)};
+  }
+  Vec3 world_from_local(const Vec3& w) const {
+    return frame.x * w.x + frame.y * w.y + frame.z * w.z;
+  }
 };
 
 /// The triangles of a scene, numbered through in the order of its primitives. Keeps a reference to
 /// the scene.
 class SurfaceLookup {
  public:
-  explicit SurfaceLookup(const mesh::Scene& scene);
+  /// `brdf` by brdf::kBrdfSyntax, of all surfaces. Throws Error (usage) when it is not.
+  SurfaceLookup(const mesh::Scene& scene, std::string_view brdf);
 
   /// The middle of the scene. All that is traced is relative to it: small scenes far from the
   /// origin keep their precision.
   const Vec3& centre() const { return centre_; }
   ray::Triangles triangles() const { return {positions_, indices_}; }
 
-  /// Nothing where the hit reflects nothing: the back of a surface.
-  std::optional<SurfacePoint> surface_at(const ray::Hit& hit) const;
+  /// What a ray in `direction` has hit. Nothing where it reflects nothing: the back of a surface.
+  std::optional<SurfacePoint> surface_at(const ray::Hit& hit, const Vec3& direction) const;
 
  private:
+  void add_triangles();
+  void make_reflectors(std::string_view brdf);
+
   const mesh::Scene& scene_;
   Vec3 centre_{0.0f};
   std::vector<Vec3> positions_;  // relative to the centre
   std::vector<std::uint32_t> indices_;
   std::vector<std::uint32_t> primitive_of_triangle_;
   std::vector<std::uint32_t> first_triangle_;  // of each primitive
+  std::vector<Reflector> reflectors_;          // of each material; last, of primitives without one
 };
 
 }  // namespace prt::reference

@@ -1,7 +1,6 @@
 #include "reference/tile.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "reference/sampler.h"
 
@@ -11,26 +10,11 @@ namespace {
 
 using Vec3d = Imath::V3d;
 
-constexpr float kInversePi = std::numbers::inv_pi_v<float>;
-
-// Pairs of dimensions of a path: the pixel's, then two for each of its vertices.
+// Pairs of dimensions of a path: the pixel's, then three for each of its vertices.
 constexpr std::uint32_t kPixelPair = 0;
-std::uint32_t scatter_pair(int bounce) { return 1 + 2 * static_cast<std::uint32_t>(bounce); }
-std::uint32_t light_pair(int bounce) { return 2 + 2 * static_cast<std::uint32_t>(bounce); }
-
-// A direction around the unit normal n, density cos/pi; the frame of [Duff et al. 2017].
-Vec3 cosine_direction(const Vec3& n, const Vec2& u) {
-  const float radius = std::sqrt(u.x);
-  const float angle = 2.0f * std::numbers::pi_v<float> * u.y;
-  const float sign = std::copysign(1.0f, n.z);
-  const float a = -1.0f / (sign + n.z);
-  const float b = n.x * n.y * a;
-  const Vec3 tangent(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  const Vec3 bitangent(b, sign + n.y * n.y * a, -n.y);
-  return (tangent * (radius * std::cos(angle)) + bitangent * (radius * std::sin(angle)) +
-          n * std::sqrt(1.0f - u.x))
-      .normalized();
-}
+std::uint32_t scatter_pair(int bounce) { return 1 + 3 * static_cast<std::uint32_t>(bounce); }
+std::uint32_t light_pair(int bounce) { return 2 + 3 * static_cast<std::uint32_t>(bounce); }
+std::uint32_t lobe_pair(int bounce) { return 3 + 3 * static_cast<std::uint32_t>(bounce); }
 
 }  // namespace
 
@@ -104,8 +88,8 @@ void Tile::shoot(int samples_per_pixel) {
       continue;
     }
     pixels_[pixel].covered += weight;
-    if (const auto vertex = job_.surfaces.surface_at(hits_[i])) {
-      starts_.push_back({*vertex, vertex->albedo, slot});
+    if (const auto vertex = job_.surfaces.surface_at(hits_[i], rays_[i].direction)) {
+      starts_.push_back({*vertex, Vec3(1.0f), slot});
     }
   }
   add_background();
@@ -141,11 +125,7 @@ void Tile::start_paths() {
 void Tile::scatter(int bounce) {
   if (paths_.empty()) return;
   if (job_.illumination.is_peaked()) scatter_to_light(bounce);
-  rays_.clear();
-  for (const Path& path : paths_) {
-    rays_.push_back({path.vertex.origin, 0.0f,
-                     cosine_direction(path.vertex.normal, point(path.slot, scatter_pair(bounce)))});
-  }
+  sample_brdfs(bounce);
   rays_cast_ += rays_.size();
   blocked_.resize(rays_.size());
   const bool last = bounce == job_.options.bounce_count;
@@ -159,10 +139,9 @@ void Tile::scatter(int bounce) {
   escapes_.clear();
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     if (blocked_[i]) continue;
-    // throughput / pi * L cos / (cos / pi), times the weight of the balance heuristic.
     Vec3 weight = paths_[i].throughput;
-    if (job_.illumination.is_peaked()) {
-      const float pdf = rays_[i].direction.dot(paths_[i].vertex.normal) * kInversePi;
+    if (job_.illumination.is_peaked()) {  // the balance heuristic
+      const float pdf = paths_[i].pdf;
       weight *= pdf / (pdf + job_.illumination.pdf(rays_[i].direction));
     }
     escapes_.add(rays_[i].direction, weight, paths_[i].slot);
@@ -175,6 +154,30 @@ void Tile::scatter(int bounce) {
   }
 }
 
+// A ray for every path, whose throughput it multiplies by f cos / pdf. Paths end that reflect
+// nothing.
+void Tile::sample_brdfs(int bounce) {
+  rays_.clear();
+  std::size_t kept = 0;
+  for (Path path : paths_) {
+    const SurfacePoint& vertex = path.vertex;
+    const PointBrdf brdf = vertex.reflector->at(vertex.albedo);
+    const auto terms = brdf.terms();
+    const brdf::Direction eye(vertex.eye);
+    const Vec2 u = point(path.slot, scatter_pair(bounce));
+    const float u0 = terms.size() > 1 ? point(path.slot, lobe_pair(bounce)).x : 0.0f;
+    const brdf::Direction light = brdf::sample(terms, eye, double{u0}, double{u.x}, double{u.y});
+    const brdf::Colour value = brdf::evaluate(terms, light, eye);
+    if (value == brdf::Colour(0)) continue;
+    const double pdf = brdf::pdf(terms, light, eye);
+    path.throughput *= Vec3(value * (light.z / pdf));
+    path.pdf = static_cast<float>(pdf);
+    rays_.push_back({vertex.origin, 0.0f, vertex.world_from_local(Vec3(light)).normalized()});
+    paths_[kept++] = path;
+  }
+  paths_.resize(kept);
+}
+
 // The other strategy of the balance heuristic: directions drawn from the light.
 void Tile::scatter_to_light(int bounce) {
   rays_.clear();
@@ -182,12 +185,17 @@ void Tile::scatter_to_light(int bounce) {
   for (const Path& path : paths_) {
     const Illumination::Sample sample =
         job_.illumination.sample(point(path.slot, light_pair(bounce)));
-    const float cosine = sample.direction.dot(path.vertex.normal);
-    if (cosine <= 0.0f || sample.pdf <= 0.0f) continue;
-    rays_.push_back({path.vertex.origin, 0.0f, sample.direction});
-    // throughput / pi * L cos / p_light * p_light / (p_light + p_cosine)
-    const float pdf = cosine * kInversePi;
-    escapes_.add(sample.direction, path.throughput * (pdf / (sample.pdf + pdf)), path.slot);
+    const SurfacePoint& vertex = path.vertex;
+    const brdf::Direction light(vertex.local_from_world(sample.direction)), eye(vertex.eye);
+    if (light.z <= 0.0 || sample.pdf <= 0.0f) continue;
+    const PointBrdf brdf = vertex.reflector->at(vertex.albedo);
+    const brdf::Colour value = brdf::evaluate(brdf.terms(), light, eye);
+    if (value == brdf::Colour(0)) continue;
+    const double pdf = brdf::pdf(brdf.terms(), light, eye);
+    // f L cos / p_light * p_light / (p_light + p_brdf)
+    const Vec3 weight(value * (light.z / (double{sample.pdf} + pdf)));
+    rays_.push_back({vertex.origin, 0.0f, sample.direction});
+    escapes_.add(sample.direction, path.throughput * weight, path.slot);
   }
   rays_cast_ += rays_.size();
   blocked_.resize(rays_.size());
@@ -202,11 +210,8 @@ void Tile::follow_hits() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     if (!blocked_[i]) continue;
-    const auto vertex = job_.surfaces.surface_at(hits_[i]);
-    if (!vertex) continue;
-    const Vec3 throughput = paths_[i].throughput * vertex->albedo;
-    if (throughput == Vec3(0.0f)) continue;
-    paths_[kept++] = {*vertex, throughput, paths_[i].slot};
+    const auto vertex = job_.surfaces.surface_at(hits_[i], rays_[i].direction);
+    if (vertex) paths_[kept++] = {*vertex, paths_[i].throughput, paths_[i].slot};
   }
   paths_.resize(kept);
 }

@@ -25,8 +25,9 @@ struct Job {
 
 struct Path {
   SurfacePoint vertex;  // the one it has reached
-  Vec3 throughput;      // product of the albedos, the one of `vertex` included
+  Vec3 throughput;      // what its light counts for the pixel
   std::uint32_t slot;   // pixel of the tile * kBatchSampleCount + sample of the batch
+  float pdf = 0.0f;     // of the direction it leaves `vertex` in, once scattered
 };
 
 // Directions that escaped, and by how much each counts for its path.
@@ -67,6 +68,7 @@ class Tile {
   void add_background();
   void start_paths();
   void scatter(int bounce);
+  void sample_brdfs(int bounce);
   void scatter_to_light(int bounce);
   void follow_hits();
   void gather();

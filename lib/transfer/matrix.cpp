@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "brdf/brdf_matrix.h"
+#include "brdf/scene_material.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -70,22 +71,9 @@ signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions
   return header;
 }
 
-brdf::MetallicRoughness reflection_of(const mesh::Material& from) {
-  brdf::MetallicRoughness material;
-  material.metallic = double{from.metallic};
-  material.roughness = double{from.roughness};
-  material.ior = double{from.ior};
-  material.specular = double{from.specular};
-  material.specular_color = brdf::Colour(from.specular_color);
-  material.has_anisotropy = from.has_anisotropy;
-  material.anisotropy_strength = double{from.anisotropy_strength};
-  material.anisotropy_rotation = double{from.anisotropy_rotation};
-  return material;
-}
-
 // Lobes that are black whatever the base colour is are left out.
 SurfaceOperator operator_of(const mesh::Material& from, const MatrixOptions& options) {
-  SurfaceOperator surface{0, {}, true, reflection_of(from), {}};
+  SurfaceOperator surface{0, {}, true, brdf::metallic_roughness(from), {}};
   const auto lobes = brdf::material_lobes(surface.material);
   const auto colours = brdf::material_colours(surface.material);  // of a white base
   const double rotation = surface.material.has_anisotropy ? from.anisotropy_rotation : 0.0;

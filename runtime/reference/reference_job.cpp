@@ -70,12 +70,14 @@ void render_reference(const ReferenceOptions& options, Report& report) {
   const auto transfer = document.precomputed_transfer();
   const camera::Camera camera = make_camera(picture, camera::bounding_sphere(scene));
   stage.emplace(report, "load light");
+  const std::string brdf = options.brdf.value_or(transfer ? transfer->brdf : "lambert");
   const Lighting lighting = make_lighting(picture, transfer ? transfer->band_count : 0);
   const auto illumination = make_illumination(lighting, options);
   stage.emplace(report, "trace");
   reference::Result result =
       reference::trace(scene, camera, *illumination,
-                       {.width = picture.width,
+                       {.brdf = brdf,
+                        .width = picture.width,
                         .height = picture.height,
                         .sample_count = options.sample_count,
                         .bounce_count = options.bounce_count,
@@ -83,6 +85,7 @@ void render_reference(const ReferenceOptions& options, Report& report) {
                         .filter = options.box_filter ? reference::PixelFilter::box
                                                      : reference::PixelFilter::center});
   stage.emplace(report, "write");
+  report.json()["brdf"] = brdf;
   report.json()["rays_cast"] = result.rays_cast;
   report.json()["rays_per_second"] = static_cast<double>(result.rays_cast) / result.trace_seconds;
   report.json()["sample_count"] = result.sample_count;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -14,27 +13,6 @@ namespace prt::reference {
 namespace {
 
 const BandLimitedIllumination kWhite(sh::constant_light(1, Vec3(1.0f)));
-
-Options small(int size, int samples, int bounces) {
-  Options options;
-  options.width = options.height = size;
-  options.sample_count = samples;
-  options.bounce_count = bounces;
-  return options;
-}
-
-// Calls check(x, y) for every pixel that is covered as a whole; fails when there is none.
-void for_covered(const Result& result, const std::function<void(int, int)>& check) {
-  int count = 0;
-  for (int y = 0; y < result.radiance.height; ++y) {
-    for (int x = 0; x < result.radiance.width; ++x) {
-      if (result.radiance.at(x, y)[3] != 1.0f) continue;
-      check(x, y);
-      ++count;
-    }
-  }
-  EXPECT_GT(count, 100);
-}
 
 // Where the centre of a pixel meets the plane of the given normal through the origin.
 Vec3 point_on_plane(const camera::Camera& camera, const Vec3& normal, int size, int x, int y) {

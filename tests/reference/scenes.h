@@ -1,10 +1,14 @@
 // Scenes whose light is known in closed form, for the tests of the path tracer.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <functional>
 #include <numbers>
 
 #include "camera/camera.h"
 #include "mesh/scene.h"
+#include "reference/path_tracer.h"
 
 namespace prt::reference {
 
@@ -67,6 +71,27 @@ inline camera::Camera look(const Vec3& eye, const Vec3& target, float vertical_f
   camera.target = target;
   camera.vertical_fov = vertical_fov;
   return camera;
+}
+
+inline Options small(int size, int samples, int bounces) {
+  Options options;
+  options.width = options.height = size;
+  options.sample_count = samples;
+  options.bounce_count = bounces;
+  return options;
+}
+
+/// Calls check(x, y) for every pixel that is covered as a whole; fails when there is none.
+inline void for_covered(const Result& result, const std::function<void(int, int)>& check) {
+  int count = 0;
+  for (int y = 0; y < result.radiance.height; ++y) {
+    for (int x = 0; x < result.radiance.width; ++x) {
+      if (result.radiance.at(x, y)[3] != 1.0f) continue;
+      check(x, y);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 100);
 }
 
 }  // namespace prt::reference
