@@ -5,6 +5,7 @@
 
 #include "brdf/brdf.h"
 #include "comparison.h"
+#include "mesh/frame.h"
 #include "scenes.h"
 
 namespace prt::reference {
@@ -80,7 +81,7 @@ TEST(GlossyScenes, MaterialsAreSeenInTheFrameOfTheTangent) {
                        [&](const Vec3& w) { return sh::light_radiance(light, w); });
     });
     expect_equal(found, 4, 1e-3);
-    EXPECT_LT(found.noise, 0.01 * found.energy);
+    EXPECT_LT(found.noise, 0.03 * found.energy);
     const Vec3 pixel(result.radiance.at(0, 0)[0], 0.0f, 0.0f);
     EXPECT_GT(std::abs(pixel.x - mirrored_pixel.x), 0.05f * pixel.x);  // the side matters
     mirrored_pixel = pixel;
@@ -107,7 +108,7 @@ TEST(GlossyScenes, SharpAndBroadLobesUnderASmallSun) {
     options.brdf = name;
     const Result result = trace(scene, camera, EnvironmentIllumination(map), options);
     const Comparison found = compare(result, [&](int x, int y) {
-      return reflected(brdf, frame, -pixel_direction(camera, 2, x, y), 512,
+      return reflected(brdf, frame, -pixel_direction(camera, 2, x, y), 256,
                        [&](const Vec3& w) { return image::environment_radiance(map, w); });
     });
     expect_equal(found, 4, 3e-3);
@@ -135,7 +136,7 @@ class GlossyCorner {
 
   /// Radiance that the floor sends to the eye after one bounce.
   Vec3 from_floor(const Vec3& p, const Vec3& eye) const {
-    return reflected(brdfs_[0], frame(0), eye, 48, [&](const Vec3& w) {
+    return reflected(brdfs_[0], frame(0), eye, 40, [&](const Vec3& w) {
       const Vec3 hit = p - w * (p.z / w.z);
       return w.z < 0.0f && inside(hit.x, hit.y) ? from_wall(hit, -w) : Vec3(1.0f);
     });
@@ -150,7 +151,7 @@ class GlossyCorner {
   }
 
   Vec3 from_wall(const Vec3& p, const Vec3& eye) const {
-    return reflected(brdfs_[1], frame(1), eye, 20, [&](const Vec3& w) {
+    return reflected(brdfs_[1], frame(1), eye, 14, [&](const Vec3& w) {
       const Vec3 hit = p - w * (p.y / w.y);
       return w.y < 0.0f && inside(hit.x, hit.z) ? Vec3(0.0f) : Vec3(1.0f);
     });
