@@ -77,7 +77,6 @@ void check_usage(const Options& options) {
   const bool matrix = options.mode == "matrix";
   if (!matrix && options.row_count) reject("--rows needs --mode matrix");
   if (!matrix && options.brdf) reject("--brdf needs --mode matrix");
-  if (matrix && options.diffuse.bounce_count > 0) reject("--bounces needs --mode diffuse");
   if (options.brdf) brdf::parse_brdf(*options.brdf);
   if (options.row_count) sh::hemisphere_functions(*options.row_count);
 }
@@ -101,16 +100,28 @@ signal::TransferSignal bake_matrices(const Options& options, const mesh::Scene& 
                                      bool no_clobber, transfer::DiffuseStats& stats,
                                      Report& report) {
   const transfer::DiffuseOptions& from = options.diffuse;
-  const transfer::MatrixTransfer transfer(
-      scene,
-      {options.brdf.value_or("from-material"), from.band_count, options.row_count.value_or(25),
-       from.ray_count, from.shadowed, from.channels, from.seed},
-      stats);
-  const StageTimer timer(report, "save");
+  const std::filesystem::path folder = options.output.parent_path();
+  transfer::MatrixTransfer transfer(scene,
+                                    {.brdf = options.brdf.value_or("from-material"),
+                                     .band_count = from.band_count,
+                                     .row_count = options.row_count.value_or(25),
+                                     .ray_count = from.ray_count,
+                                     .bounce_count = from.bounce_count,
+                                     .bounce_ray_count = from.bounce_ray_count,
+                                     .shadowed = from.shadowed,
+                                     .channels = from.channels,
+                                     .seed = from.seed,
+                                     .scratch_folder = folder.empty() ? "." : folder},
+                                    stats);
+  const double before = stats.matrix_seconds + stats.bounce_seconds;
+  const Stopwatch watch;
   signal::write_transfer(
       options.output, transfer.header(),
       [&](auto first, auto count, auto values) { transfer.compute(first, count, values); },
       no_clobber);
+  report.add_stage("save",
+                   watch.seconds() - (stats.matrix_seconds + stats.bounce_seconds - before));
+  report.json()["scratch_bytes"] = transfer.field_bytes();
   return transfer.header();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace prt::transfer {
@@ -87,6 +88,13 @@ BuriedRepair::BuriedRepair(const SceneIndex& index, const std::vector<std::uint8
     }
     for (std::size_t i : ring) nodes[i].resolved = true;
   } while (!ring.empty());
+}
+
+std::vector<std::uint32_t> BuriedRepair::stand_ins(std::size_t vertex_count) const {
+  std::vector<std::uint32_t> stand_ins(vertex_count);
+  std::iota(stand_ins.begin(), stand_ins.end(), 0u);
+  for (const Step& step : steps_) stand_ins[step.vertex] = stand_ins[sources_[step.source_begin]];
+  return stand_ins;
 }
 
 void BuriedRepair::apply(float* rows, std::size_t stride) const {

@@ -21,17 +21,10 @@ namespace prt::transfer {
 
 namespace {
 
-constexpr int kMaxBounceRayCount = 1 << 14;  // a block's hits stay under 17 MB
-
 void check_options(const DiffuseOptions& options) {
   check_range("band count", options.band_count, 1, sh::kMaxBandCount);
   check_range("ray count", options.ray_count, 1, kMaxRayCount);
-  check_range("bounce count", options.bounce_count, 0, 1000);
-  check_range("bounce ray count", options.bounce_ray_count, 0, kMaxBounceRayCount);
-  if (options.bounce_count > 0 && !options.shadowed) {
-    throw Error(ErrorKind::usage, "bounces need shadows",
-                {.advice = "Leave out one of unshadowed and bounces."});
-  }
+  check_bounces(options.bounce_count, options.bounce_ray_count, options.shadowed);
 }
 
 /// Basis functions at all directions, a padded row a direction.
@@ -166,9 +159,7 @@ class DiffuseBake {
   void bounce(const BuriedRepair& repair, std::vector<float> blocked) {
     if (index_.vertex_count() == 0) return;
     const Stopwatch watch;
-    const int rays = options_.bounce_ray_count > 0
-                         ? options_.bounce_ray_count
-                         : std::min((options_.ray_count + 3) / 4, kMaxBounceRayCount);
+    const int rays = choose_bounce_ray_count(options_.bounce_ray_count, options_.ray_count);
     Reflection reflection(index_,
                           make_directions(2 * static_cast<std::size_t>(rays), options_.seed),
                           signal_.channel_count, std::move(blocked), hit_bytes());

@@ -59,6 +59,7 @@ struct DiffuseStats {
   double build_seconds = 0.0;               ///< the ray engine's tree, the order of vertices
   double trace_seconds = 0.0;               ///< the shadow pass
   double bounce_seconds = 0.0;              ///< rays of the bounces, and gathering
+  double matrix_seconds = 0.0;              ///< matrices without bounces
 };
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.

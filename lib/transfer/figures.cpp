@@ -22,6 +22,7 @@ void report_figures(Report& report, const DiffuseStats& stats,
   report.add_stage("build", stats.build_seconds);
   report.add_stage("trace", stats.trace_seconds);
   report.add_stage("bounce", stats.bounce_seconds);
+  if (stats.matrix_seconds > 0) report.add_stage("matrices", stats.matrix_seconds);
   if (stats.buried_vertex_count > 0) {
     log::warning("{} of {} vertices are buried in other geometry; {} took their neighbours' values",
                  stats.buried_vertex_count, signal.vertex_count(),

@@ -30,8 +30,9 @@ class Hemisphere {
 
   /// Closest hits in all directions above the vertex's horizon, kNoHit where nothing is hit.
   std::span<const ray::Hit> trace_closest(std::size_t vertex);
-  /// Cosine of ray `i` of trace_closest.
+  /// Cosine and direction number of ray `i` of trace_closest.
   float cosine(std::size_t i) const { return cosines_[above_[i]]; }
+  std::uint32_t direction(std::size_t i) const { return above_[i]; }
 
   /// Rays cast so far, of both kinds.
   std::uint64_t rays_cast() const { return rays_cast_; }

@@ -3,20 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <array>
+#include <atomic>
+#include <numeric>
 
-#include "brdf/brdf_matrix.h"
-#include "brdf/scene_material.h"
 #include "core/error.h"
-#include "core/log.h"
 #include "core/parallel.h"
+#include "core/progress.h"
+#include "core/stopwatch.h"
 #include "linalg/product.h"
 #include "mesh/frame.h"
 #include "sh/basis.h"
 #include "sh/rotation.h"
 #include "transfer/channels.h"
 #include "transfer/limits.h"
-#include "transfer/matrix_visibility.h"
+#include "transfer/matrix_kernels.h"
 #include "transfer/reflection.h"
 
 namespace prt::transfer {
@@ -24,17 +25,17 @@ namespace prt::transfer {
 namespace {
 
 using linalg::ConstMatrixF;
-using linalg::MatrixD;
 using linalg::MatrixF;
 using linalg::Transpose;
 
-std::size_t size_of(int band_count) {
+constexpr std::size_t size_of(int band_count) {
   return static_cast<std::size_t>(sh::coefficient_count(band_count));
 }
 
 void check_options(const MatrixOptions& options) {
   check_range("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
   check_range("ray count", options.ray_count, 1, kMaxRayCount);
+  check_bounces(options.bounce_count, options.bounce_ray_count, options.shadowed);
   sh::hemisphere_functions(options.row_count);
 }
 
@@ -45,6 +46,7 @@ bool has_coloured_specular(const mesh::Scene& scene) {
 }
 
 signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions& options) {
+  check_options(options);
   signal::TransferSignal header;
   header.band_count = options.band_count;
   header.row_count = options.row_count;
@@ -63,6 +65,7 @@ signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions
   header.brdf = options.brdf;
   header.seed = options.seed;
   header.ray_count = options.shadowed ? options.ray_count : 0;
+  header.bounce_count = options.bounce_count;
   header.tool_version = PRTKIT_VERSION;
   header.mesh_hash = mesh::mesh_hash(scene);
   for (const mesh::Primitive& primitive : scene.primitives) {
@@ -71,183 +74,192 @@ signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions
   return header;
 }
 
-// Lobes that are black whatever the base colour is are left out.
-SurfaceOperator operator_of(const mesh::Material& from, const MatrixOptions& options) {
-  SurfaceOperator surface{0, {}, true, brdf::metallic_roughness(from), {}};
-  const auto lobes = brdf::material_lobes(surface.material);
-  const auto colours = brdf::material_colours(surface.material);  // of a white base
-  const double rotation = surface.material.has_anisotropy ? from.anisotropy_rotation : 0.0;
-  for (std::size_t i = 0; i < brdf::kMaterialLobeCount; ++i) {
-    if (colours[i] == brdf::Colour(0)) continue;
-    const brdf::Brdf lobe{{{brdf::Colour(1), lobes[i]}}, rotation};
-    const std::vector<float> values =
-        exit_operator(lobe, options.row_count, options.band_count, options.projection);
-    surface.values.insert(surface.values.end(), values.begin(), values.end());
-    surface.lobes.push_back(i);
-  }
-  surface.term_count = surface.lobes.size();
-  return surface;
-}
-
-std::vector<SurfaceOperator> make_surfaces(const mesh::Scene& scene, const MatrixOptions& options) {
-  std::vector<SurfaceOperator> surfaces;
-  const auto brdf = brdf::parse_brdf(options.brdf);
-  if (brdf) {
-    surfaces.assign(
-        scene.materials.size() + 1,
-        {1, exit_operator(*brdf, options.row_count, options.band_count, options.projection)});
-    return surfaces;
-  }
-  for (const mesh::Material& material : scene.materials) {
-    if (material.has_unread_textures) {
-      log::warning("material \"{}\": textures of roughness, specular and anisotropy are ignored",
-                   material.name);
-    }
-    surfaces.push_back(operator_of(material, options));
-  }
-  surfaces.push_back(operator_of({}, options));
-  return surfaces;
-}
-
-/// Colours of a surface's terms at a vertex, as the transfer sees them.
-std::vector<Vec3> term_colours(const SurfaceOperator& surface, const Vec3& albedo,
-                               int channel_count) {
-  if (!surface.from_material) return {channel_albedo(albedo, channel_count)};
-  brdf::MetallicRoughness material = surface.material;
-  material.base_color = brdf::Colour(albedo);
-  const auto colours = brdf::material_colours(material);
-  std::vector<Vec3> terms;
-  for (const std::size_t lobe : surface.lobes) {
-    terms.push_back(channel_albedo(Vec3(colours[lobe]), channel_count));
-  }
-  return terms;
-}
-
 }  // namespace
-
-std::vector<float> exit_operator(const brdf::Brdf& brdf, int row_count, int band_count,
-                                 sh::HemisphereProjection projection) {
-  const std::vector<int> rows = sh::hemisphere_functions(row_count);
-  const std::vector<int> columns = sh::hemisphere_functions(sh::coefficient_count(band_count));
-  const auto matrix = brdf::brdf_matrix(brdf, sh::band_count_of(rows), band_count);
-  const std::size_t m = rows.size(), n = columns.size();
-  std::vector<double> b(m * n), left(m * n), both(m * n);
-  for (std::size_t i = 0; i < m; ++i) {
-    std::copy_n(&matrix.channels[0][static_cast<std::size_t>(rows[i]) * n], n, &b[i * n]);
-  }
-  std::vector<double> exit = sh::hemisphere_projection(projection, rows);
-  std::vector<double> incident = sh::hemisphere_projection(projection, columns);
-  linalg::gemm(1, MatrixD(exit.data(), m, m), Transpose::no, MatrixD(b.data(), m, n), Transpose::no,
-               0, MatrixD(left.data(), m, n));
-  linalg::gemm(1, MatrixD(left.data(), m, n), Transpose::no, MatrixD(incident.data(), n, n),
-               Transpose::no, 0, MatrixD(both.data(), m, n));
-  return {both.begin(), both.end()};
-}
-
-struct MatrixTransfer::Run {
-  std::size_t first, count;
-  const mesh::Primitive& primitive;
-  std::size_t local;  ///< number of the first in the primitive
-};
 
 MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& options,
                                DiffuseStats& stats)
-    : scene_(scene), vertex_offsets_(scene.vertex_offsets()) {
-  check_options(options);
-  stats = {};
-  header_ = make_header(scene, options);
-  surfaces_ = make_surfaces(scene, options);
-  triple_ = triple_products(options.band_count);
-  const auto start = std::chrono::steady_clock::now();
-  const SceneIndex index(scene);
-  stats.build_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    : scene_(scene),
+      stats_(stats),
+      header_(make_header(scene, options)),
+      vertex_offsets_(scene.vertex_offsets()),
+      triple_(triple_products(options.band_count)),
+      surfaces_(scene, {options.brdf, options.band_count, options.row_count, options.projection},
+                header_.channel_count) {
+  stats_ = {};
+  const std::size_t n = size_of(options.band_count);
+  const auto channels = static_cast<std::size_t>(header_.channel_count);
+  if (options.bounce_count > 0) incident_channel_count_ = channels;
+  moment_stride_ = padded_columns(incident_channel_count_ * n);
+  matrix_stride_ = padded_columns(n);
+  const Stopwatch watch;
+  index_ = std::make_unique<SceneIndex>(scene);
+  stats_.build_seconds = watch.seconds();
   visibility_ = compute_visibility(
-      index, {2 * options.band_count - 1, options.ray_count, options.shadowed, options.seed},
-      stats);
-}
-
-void MatrixTransfer::compute(std::size_t first, std::size_t count, std::span<float> values) const {
-  const auto dimension = static_cast<std::size_t>(header_.dimension());
-  parallel_for(count, kVertexBlock, [&](std::size_t begin, std::size_t end) {
-    while (begin < end) {
-      const std::size_t vertex = first + begin;
-      const auto next = std::upper_bound(vertex_offsets_.begin(), vertex_offsets_.end(), vertex);
-      const auto number = static_cast<std::size_t>(next - vertex_offsets_.begin()) - 1;
-      const Run run{vertex, std::min(end - begin, *next - vertex), scene_.primitives[number],
-                    vertex - vertex_offsets_[number]};
-      compute_run(run, &values[begin * dimension]);
-      begin += run.count;
-    }
-  });
-}
-
-// Vertices side by side, so that the two large products are of matrices, not of vectors.
-void MatrixTransfer::compute_run(const Run& run, float* values) const {
-  const std::size_t n = size_of(header_.band_count), size = n * n;
-  const std::size_t m = size_of(2 * header_.band_count - 1);
-  const int material = run.primitive.material;
-  const SurfaceOperator& surface =
-      material < 0 ? surfaces_.back() : surfaces_[static_cast<std::size_t>(material)];
-  const std::size_t rows = surface.term_count * static_cast<std::size_t>(header_.row_count);
-  const std::size_t width = run.count * n;
-  std::vector<float> moments(run.count * size), turned(n * width), exit(rows * width);
-  linalg::gemm(1.0f, ConstMatrixF(&visibility_[run.first * m], run.count, m), Transpose::no,
-               ConstMatrixF(triple_.data(), m, size), Transpose::no, 0.0f,
-               MatrixF(moments.data(), run.count, size));
-  for (std::size_t v = 0; v < run.count; ++v) turn(run, v, &moments[v * size], &turned[v * n]);
-  linalg::gemm(1.0f, ConstMatrixF(surface.values.data(), rows, n), Transpose::no,
-               ConstMatrixF(turned.data(), n, width), Transpose::no, 0.0f,
-               MatrixF(exit.data(), rows, width));
-  store(run, surface, exit, values);
-}
-
-// R_p T_p, in a left-handed frame with the signs that a mirrored y gives functions of sines.
-void MatrixTransfer::turn(const Run& run, std::size_t number, const float* moments,
-                          float* turned) const {
-  const auto [x, y, z] = mesh::frame_at_vertex(run.primitive.mesh, run.local + number);
-  const Vec3 right = z.cross(x);
-  const bool mirrored = right.dot(y) < 0.0f;
-  const Matrix4 local_from_world(x.x, right.x, z.x, 0, x.y, right.y, z.y, 0, x.z, right.z, z.z, 0,
-                                 0, 0, 0, 1);
-  const sh::Rotation rotation(header_.band_count, local_from_world);
-  const std::size_t n = size_of(header_.band_count);
-  for (int l = 0; l < header_.band_count; ++l) {
-    for (int i = -l; i <= l; ++i) {
-      float* row = turned + static_cast<std::size_t>(sh::coefficient_index(l, i)) * run.count * n;
-      std::fill_n(row, n, 0.0f);
-      for (int k = -l; k <= l; ++k) {
-        const auto sign = mirrored && i < 0 ? -1.0f : 1.0f;
-        const float factor = sign * static_cast<float>(rotation.at(l, i, k));
-        const float* from = moments + static_cast<std::size_t>(sh::coefficient_index(l, k)) * n;
-        for (std::size_t j = 0; j < n; ++j) row[j] += factor * from[j];
-      }
-    }
+      *index_, {2 * options.band_count - 1, options.ray_count, options.shadowed, options.seed},
+      stats_);
+  if (options.bounce_count > 0) {
+    bounce(options);
+  } else {
+    index_.reset();
   }
 }
 
-void MatrixTransfer::store(const Run& run, const SurfaceOperator& surface,
-                           const std::vector<float>& exit, float* values) const {
+// Fields of 0, 1, … bounces, all but the last.
+void MatrixTransfer::bounce(const MatrixOptions& options) {
+  const Stopwatch watch;
+  const int rays = choose_bounce_ray_count(options.bounce_ray_count, options.ray_count);
+  reflection_ = std::make_unique<MatrixReflection>(
+      *index_, visibility_, make_directions(2 * static_cast<std::size_t>(rays), options.seed),
+      ExitBasis(sh::hemisphere_functions(options.row_count)), options.band_count,
+      header_.channel_count);
+  const std::size_t vertex_count = index_->vertex_count();
+  const auto make_field = [&] {
+    return std::make_unique<ExitField>(options.scratch_folder, vertex_count,
+                                       reflection_->field_row_size());
+  };
+  std::unique_ptr<ExitField> next = make_field();
+  std::unique_ptr<ExitField> spare = options.bounce_count > 1 ? make_field() : nullptr;
+  Progress progress("bounces", vertex_count * static_cast<std::size_t>(options.bounce_count),
+                    "vertices");
+  for (int b = 0; b < options.bounce_count; ++b) {
+    fill_field(*next, progress);
+    std::swap(field_, next);
+    if (!next) next = std::move(spare);
+  }
+  stats_.bounce_seconds = watch.seconds();
+}
+
+void MatrixTransfer::fill_field(ExitField& field, Progress& progress) {
+  const std::size_t row_size = field.row_size();
+  std::atomic<std::uint64_t> rays{0};
+  parallel_for(
+      index_->vertex_count(), reflection_->block_size(), [&](std::size_t begin, std::size_t end) {
+        std::vector<float> rows((end - begin) * row_size);
+        rays += compute_block(
+            {&index_->vertex_order()[begin], end - begin},
+            [&](std::size_t i, const float* matrix) { to_field(matrix, &rows[i * row_size]); });
+        field.write(begin, rows);
+        progress.advance(end - begin);
+      });
+  stats_.rays_cast += rays;
+}
+
+void MatrixTransfer::compute(std::size_t first, std::size_t count, std::span<float> values) {
+  const Stopwatch watch;
+  std::vector<std::uint32_t> vertices(count);
+  std::iota(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(first));
+  if (reflection_) {
+    std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return reflection_->rank(a) < reflection_->rank(b);
+    });
+  }
   const std::size_t n = size_of(header_.band_count);
+  const auto dimension = static_cast<std::size_t>(header_.dimension());
+  std::atomic<std::uint64_t> rays{0};
+  parallel_for(count, reflection_ ? reflection_->block_size() : kVertexBlock,
+               [&](std::size_t begin, std::size_t end) {
+                 rays += compute_block(
+                     {&vertices[begin], end - begin}, [&](std::size_t i, const float* matrix) {
+                       float* to = &values[(vertices[begin + i] - first) * dimension];
+                       for (std::size_t r = 0; r < dimension / n; ++r) {
+                         std::copy_n(matrix + r * matrix_stride_, n, to + r * n);
+                       }
+                     });
+               });
+  stats_.rays_cast += rays;
+  (reflection_ ? stats_.bounce_seconds : stats_.matrix_seconds) += watch.seconds();
+}
+
+// Vertices side by side, so that the product for T_p is of matrices, not of vectors.
+std::uint64_t MatrixTransfer::compute_block(std::span<const std::uint32_t> vertices,
+                                            const MatrixSink& sink) const {
+  const std::size_t n = size_of(header_.band_count), count = vertices.size();
+  const std::size_t m = size_of(2 * header_.band_count - 1);
+  std::vector<float> visible(count * m), direct(count * n * n);
+  for (std::size_t v = 0; v < count; ++v) {
+    std::copy_n(&visibility_.rows[vertices[v] * m], m, &visible[v * m]);
+  }
+  linalg::gemm(1.0f, ConstMatrixF(visible.data(), count, m), Transpose::no,
+               ConstMatrixF(triple_.data(), m, n * n), Transpose::no, 0.0f,
+               MatrixF(direct.data(), count, n * n));
+  std::vector<float> moments(count * n * moment_stride_);
+  for (std::size_t row = 0; row < count * n; ++row) {
+    for (std::size_t c = 0; c < incident_channel_count_; ++c) {
+      std::copy_n(&direct[row * n], n, &moments[row * moment_stride_ + c * n]);
+    }
+  }
+  const std::uint64_t rays =
+      field_ ? reflection_->add(vertices, *field_, moments.data(), moment_stride_) : 0;
+  reflect(vertices, moments, sink);
+  return rays;
+}
+
+void MatrixTransfer::reflect(std::span<const std::uint32_t> vertices,
+                             const std::vector<float>& moments, const MatrixSink& sink) const {
+  const std::size_t n = size_of(header_.band_count), size = n * moment_stride_;
+  const auto channels = static_cast<std::size_t>(header_.channel_count);
   const auto rows = static_cast<std::size_t>(header_.row_count);
-  for (std::size_t v = 0; v < run.count; ++v) {
-    const Vec3 albedo = mesh::albedo_at_vertex(scene_, run.primitive, run.local + v);
-    const std::vector<Vec3> colours = term_colours(surface, albedo, header_.channel_count);
-    for (int c = 0; c < header_.channel_count; ++c) {
-      for (std::size_t r = 0; r < rows; ++r, values += n) {
-        std::fill_n(values, n, 0.0f);
-        for (std::size_t t = 0; t < surface.term_count; ++t) {
-          const float* from = &exit[((t * rows + r) * run.count + v) * n];
-          for (std::size_t j = 0; j < n; ++j) values[j] += colours[t][c] * from[j];
-        }
+  std::vector<float> operators(channels * surfaces_.operator_size());
+  std::vector<float> turned(size + kProductPadding), matrix(channels * rows * matrix_stride_);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto next = std::upper_bound(vertex_offsets_.begin(), vertex_offsets_.end(), vertices[v]);
+    const auto number = static_cast<std::size_t>(next - vertex_offsets_.begin()) - 1;
+    const mesh::Primitive& primitive = scene_.primitives[number];
+    const std::size_t local = vertices[v] - vertex_offsets_[number];
+    turn(mesh::frame_at_vertex(primitive.mesh, local), &moments[v * size], turned.data());
+    surfaces_.at_vertex(primitive, local, operators);
+    std::fill(matrix.begin(), matrix.end(), 0.0f);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const std::size_t first = incident_channel_count_ > 1 ? c * n : 0;
+      add_product({&operators[c * surfaces_.operator_size()], rows, &turned[first], moment_stride_,
+                   &matrix[c * rows * matrix_stride_], matrix_stride_, rows, n, matrix_stride_});
+    }
+    sink(v, matrix.data());
+  }
+}
+
+// R_p T_p, in a left-handed frame with the signs that a mirrored y gives functions of sines.
+void MatrixTransfer::turn(const mesh::Frame& frame, const float* moments, float* turned) const {
+  const auto& [x, y, z] = frame;
+  const Vec3 right = z.cross(x);
+  const bool mirrored = right.dot(y) < 0.0f;
+  const sh::Rotation rotation(header_.band_count, Matrix4(x.x, right.x, z.x, 0, x.y, right.y, z.y,
+                                                          0, x.z, right.z, z.z, 0, 0, 0, 0, 1));
+  std::fill_n(turned, size_of(header_.band_count) * moment_stride_, 0.0f);
+  std::array<float, size_of(2 * kMaxMatrixBandCount - 1)> block;
+  for (int l = 0; l < header_.band_count; ++l) {
+    const std::size_t size = static_cast<std::size_t>(2 * l + 1), first = size_of(l);
+    float* entry = block.data();
+    for (int k = -l; k <= l; ++k) {
+      for (int i = -l; i <= l; ++i) {
+        const double sign = mirrored && i < 0 ? -1.0 : 1.0;
+        *entry++ = static_cast<float>(sign * rotation.at(l, i, k));
       }
+    }
+    add_product({block.data(), size, moments + first * moment_stride_, moment_stride_,
+                 turned + first * moment_stride_, moment_stride_, size, size, moment_stride_});
+  }
+}
+
+void MatrixTransfer::to_field(const float* matrix, float* row) const {
+  const ExitBasis& basis = reflection_->basis();
+  const std::size_t n = size_of(header_.band_count);
+  const auto channels = static_cast<std::size_t>(header_.channel_count);
+  std::vector<float> part(basis.function_count * matrix_stride_);
+  for (std::size_t c = 0; c < channels; ++c) {
+    std::fill(part.begin(), part.end(), 0.0f);
+    add_product({basis.from_sh.data(), basis.function_count,
+                 matrix + c * basis.row_count * matrix_stride_, matrix_stride_, part.data(),
+                 matrix_stride_, basis.function_count, basis.row_count, matrix_stride_});
+    for (std::size_t f = 0; f < basis.function_count; ++f) {
+      std::copy_n(&part[f * matrix_stride_], n, row + (f * channels + c) * n);
     }
   }
 }
 
 signal::TransferSignal compute_matrices(const mesh::Scene& scene, const MatrixOptions& options,
                                         DiffuseStats& stats) {
-  const MatrixTransfer transfer(scene, options, stats);
+  MatrixTransfer transfer(scene, options, stats);
   signal::TransferSignal signal = transfer.header();
   signal.values.resize(signal.vertex_count() * static_cast<std::size_t>(signal.dimension()));
   transfer.compute(0, signal.vertex_count(), signal.values);

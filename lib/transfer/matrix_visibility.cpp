@@ -36,7 +36,7 @@ class VisibilityPass {
         rows_(index.vertex_count() * count_),
         buried_(index.vertex_count()) {}
 
-  std::vector<float> run() {
+  Visibility run() {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<float> basis = options_.shadowed ? basis_rows() : std::vector<float>();
     std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
@@ -53,7 +53,7 @@ class VisibilityPass {
     stats_.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
-    return std::move(rows_);
+    return {std::move(rows_), repair.stand_ins(index_.vertex_count())};
   }
 
  private:
@@ -115,8 +115,8 @@ class VisibilityPass {
 
 }  // namespace
 
-std::vector<float> compute_visibility(const SceneIndex& index, const VisibilityOptions& options,
-                                      DiffuseStats& stats) {
+Visibility compute_visibility(const SceneIndex& index, const VisibilityOptions& options,
+                              DiffuseStats& stats) {
   return VisibilityPass(index, options, stats).run();
 }
 

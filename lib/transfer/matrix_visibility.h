@@ -19,12 +19,19 @@ struct VisibilityOptions {
   std::uint64_t seed = 1;
 };
 
-/// band_count² coefficients for each vertex, world frame: the hemisphere in closed form minus the
-/// sum over blocked directions, exact on a convex body; buried vertices are filled in from their
-/// neighbours (transfer/buried.h). The same bytes for any number of threads. Sets everything in
-/// `stats` but the bounces and build_seconds.
-std::vector<float> compute_visibility(const SceneIndex& index, const VisibilityOptions& options,
-                                      DiffuseStats& stats);
+struct Visibility {
+  /// band_count² coefficients for each vertex, world frame: the hemisphere in closed form minus the
+  /// sum over blocked directions, exact on a convex body. Rows of buried vertices are filled in
+  /// from their neighbours (transfer/buried.h).
+  std::vector<float> rows;
+  /// For each vertex itself, or for a buried one the vertex whose surroundings stand for its own.
+  std::vector<std::uint32_t> stand_ins;
+};
+
+/// The same bytes for any number of threads. Sets everything in `stats` but the bounces and
+/// build_seconds.
+Visibility compute_visibility(const SceneIndex& index, const VisibilityOptions& options,
+                              DiffuseStats& stats);
 
 /// C of T = V C: row k, column i·n² + j holds ∫ y_k y_i y_j over the sphere, for (2n-1)² rows and
 /// n⁴ columns, n = band_count up to kMaxMatrixBandCount. By exact quadrature.

@@ -31,6 +31,19 @@ class GlossyTest(ToolTest):
         self.bake("--rows", 24, "--brdf", "phong:10", "--rays", 64, "--threads", 1)
         self.assertEqual(self.output.read_bytes(), first)
 
+    def test_bounces(self):
+        self.done("prt-import", BUNNY, "-o", self.model)
+        report = self.folder / "report.json"
+        transfer = self.bake("--rows", 24, "--bands", 5, "--brdf", "phong:10", "--rays", 64,
+                             "--bounces", 2, "--report", report)
+        self.assertEqual(transfer["bounce_count"], 2)
+        figures = json.loads(report.read_text())
+        # Two fields of half floats, and nothing left of them.
+        self.assertEqual(figures["scratch_bytes"],
+                         2 * 2 * 24 * 25 * figures["vertex_count"])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
+                         ["cache", "model.glb", "out.transfer.exr", "report.json"])
+
     def test_materials_of_the_file(self):
         self.done("prt-import", self.write("quad.obj", QUAD_OBJ), "-o", self.model)
         transfer = self.bake("--bands", 4, "--rows", 9)
@@ -47,7 +60,7 @@ class GlossyTest(ToolTest):
         self.refused(WRONG_USAGE, "not a BRDF", *matrix, "--brdf", "ggx:2")
         self.refused(WRONG_USAGE, "1 to 8", *matrix, "--bands", 9)
         self.refused(WRONG_USAGE, "at most 8192", *matrix, "--bands", 8, "--rows", 144)
-        self.refused(WRONG_USAGE, "--bounces needs", *matrix, "--bounces", 1)
+        self.refused(WRONG_USAGE, "0 to 16384", *matrix, "--bounces", 1, "--bounce-rays", 20000)
 
 
 if __name__ == "__main__":

@@ -11,52 +11,12 @@
 #include "sh/quadrature.h"
 #include "sh/rotation.h"
 #include "transfer/hemisphere.h"
+#include "transfer/matrices.h"
 #include "transfer/matrix_visibility.h"
 #include "transfer/scenes.h"
 
 namespace prt::transfer {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-using Kind = sh::HemisphereProjection;
-
-signal::TransferSignal bake(const mesh::Scene& scene, const std::string& brdf,
-                            MatrixOptions options) {
-  DiffuseStats stats;
-  options.brdf = brdf;
-  return compute_matrices(scene, options, stats);
-}
-
-brdf::LobePointer lobe_of(const std::string& text) { return brdf::parse_brdf(text)->lobes[0].lobe; }
-
-/// Exit radiance of a vertex towards a world direction under a light of the signal's bands.
-double exit_radiance(const signal::TransferSignal& signal, const mesh::TriangleMesh& mesh,
-                     std::size_t vertex, std::span<const float> light, const Vec3& towards,
-                     int channel = 0) {
-  const auto functions = sh::hemisphere_functions(signal.row_count);
-  const auto [x, y, z] = mesh::frame_at_vertex(mesh, vertex);
-  std::vector<double> basis(256);
-  sh::evaluate(sh::band_count_of(functions), double{towards.dot(x)}, double{towards.dot(y)},
-               double{towards.dot(z)}, basis);
-  const auto n = static_cast<std::size_t>(signal.band_count * signal.band_count);
-  const float* values = &signal.values[vertex * static_cast<std::size_t>(signal.dimension()) +
-                                       static_cast<std::size_t>(channel) * functions.size() * n];
-  double sum = 0;
-  for (const int function : functions) {
-    for (std::size_t j = 0; j < n; ++j, ++values) {
-      sum += basis[static_cast<std::size_t>(function)] * double{*values} * double{light[j]};
-    }
-  }
-  return sum;
-}
-
-std::vector<float> random_light(int band_count, std::uint64_t seed) {
-  Pcg32 random(seed);
-  std::vector<float> light(static_cast<std::size_t>(band_count * band_count));
-  for (float& value : light) value = 2 * random.uniform() - 1;
-  light[0] += 2;
-  return light;
-}
 
 /// ∫ f(light, towards) cos V(light) L(light), by the set's directions and a shadow ray each.
 double direct_integral(const SceneIndex& index, std::size_t vertex, const brdf::Lobe& lobe,
@@ -110,8 +70,8 @@ TEST(TransferMatrix, VisibilityBandsHoldTheDirectIntegral) {
   const SceneIndex index(scene);
   constexpr int kBands = 4;
   DiffuseStats stats;
-  const auto rows = compute_visibility(index, {2 * kBands - 1, 1024, true, 5}, stats);
-  const auto whole = compute_visibility(index, {2 * kBands - 1, 1024, false, 5}, stats);
+  const auto rows = compute_visibility(index, {2 * kBands - 1, 1024, true, 5}, stats).rows;
+  const auto whole = compute_visibility(index, {2 * kBands - 1, 1024, false, 5}, stats).rows;
   const auto triple = triple_products(kBands);
   const Directions directions = make_directions(2048, 5);
   Hemisphere hemisphere(index, directions);
@@ -340,7 +300,7 @@ TEST(TransferMatrix, BlocksAndThreadsDoNotShow) {
   set_thread_count(1);
   const auto signal = bake(scene, "phong:5", options);
   set_thread_count(0);
-  const MatrixTransfer transfer(scene, options, stats);
+  MatrixTransfer transfer(scene, options, stats);
   EXPECT_EQ(transfer.header().brdf, "phong:5");
   EXPECT_EQ(transfer.header().values.size(), 0u);
   EXPECT_EQ(stats.buried_vertex_count, 0u);
