@@ -11,7 +11,7 @@
 #include "ray/engine.h"
 #include "transfer/diffuse.h"
 #include "transfer/figures.h"
-#include "transfer/matrix.h"
+#include "transfer/matrix_job.h"
 
 namespace {
 
@@ -96,33 +96,17 @@ signal::TransferSignal bake_diffuse(const Options& options, const mesh::Scene& s
   return signal;
 }
 
-signal::TransferSignal bake_matrices(const Options& options, const mesh::Scene& scene,
-                                     bool no_clobber, transfer::DiffuseStats& stats,
-                                     Report& report) {
+transfer::MatrixOptions matrix_options(const Options& options) {
   const transfer::DiffuseOptions& from = options.diffuse;
-  const std::filesystem::path folder = options.output.parent_path();
-  transfer::MatrixTransfer transfer(scene,
-                                    {.brdf = options.brdf.value_or("from-material"),
-                                     .band_count = from.band_count,
-                                     .row_count = options.row_count.value_or(25),
-                                     .ray_count = from.ray_count,
-                                     .bounce_count = from.bounce_count,
-                                     .bounce_ray_count = from.bounce_ray_count,
-                                     .shadowed = from.shadowed,
-                                     .channels = from.channels,
-                                     .seed = from.seed,
-                                     .scratch_folder = folder.empty() ? "." : folder},
-                                    stats);
-  const double before = stats.matrix_seconds + stats.bounce_seconds;
-  const Stopwatch watch;
-  signal::write_transfer(
-      options.output, transfer.header(),
-      [&](auto first, auto count, auto values) { transfer.compute(first, count, values); },
-      no_clobber);
-  report.add_stage("save",
-                   watch.seconds() - (stats.matrix_seconds + stats.bounce_seconds - before));
-  report.json()["scratch_bytes"] = transfer.field_bytes();
-  return transfer.header();
+  return {.brdf = options.brdf.value_or("from-material"),
+          .band_count = from.band_count,
+          .row_count = options.row_count.value_or(25),
+          .ray_count = from.ray_count,
+          .bounce_count = from.bounce_count,
+          .bounce_ray_count = from.bounce_ray_count,
+          .shadowed = from.shadowed,
+          .channels = from.channels,
+          .seed = from.seed};
 }
 
 void bake(Options& options, const cli::CommonOptions& common, Report& report) {
@@ -132,8 +116,11 @@ void bake(Options& options, const cli::CommonOptions& common, Report& report) {
   options.diffuse.shadowed = !options.unshadowed;
   options.diffuse.seed = common.seed;
   transfer::DiffuseStats stats;
-  const auto bake_mode = options.mode == "matrix" ? bake_matrices : bake_diffuse;
-  const signal::TransferSignal signal = bake_mode(options, scene, common.no_clobber, stats, report);
+  const signal::TransferSignal signal =
+      options.mode == "matrix"
+          ? transfer::bake_matrices(scene, matrix_options(options), options.output,
+                                    common.no_clobber, stats, report)
+          : bake_diffuse(options, scene, common.no_clobber, stats, report);
   transfer::report_figures(report, stats, signal);
   report.add_output(options.output);
 }

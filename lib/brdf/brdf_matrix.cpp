@@ -91,7 +91,6 @@ BrdfMatrix brdf_matrix(const Brdf& brdf, int row_band_count, int column_band_cou
   std::vector<double> mean(size);
   result.channels.fill(mean);
   double exit_norm = 0, kernel_norm = 0;
-  bool accurate = true;
   for (const auto& [colour, lobe] : brdf.lobes) {
     const LobeMatrix matrix =
         cached_lobe_matrix(*lobe, row_band_count, column_band_count, tolerance, folder);
@@ -106,7 +105,6 @@ BrdfMatrix brdf_matrix(const Brdf& brdf, int row_band_count, int column_band_cou
     exit_norm += weight * std::sqrt(std::max(0.0, matrix.exit_energy - kept.exit));
     kernel_norm += weight * std::sqrt(std::max(0.0, matrix.kernel_energy - kept.kernel));
     result.error += matrix.error * std::max({colour.x, colour.y, colour.z});
-    accurate = accurate && matrix.error <= tolerance;
   }
   const Energies kept = captured_energies(mean, row_band_count, column_band_count);
   result.loss = {share(exit_norm * exit_norm, kept.exit),
@@ -114,12 +112,18 @@ BrdfMatrix brdf_matrix(const Brdf& brdf, int row_band_count, int column_band_cou
   for (auto& channel : result.channels) {
     turn(brdf.rotation, row_band_count, column_band_count, channel);
   }
-  if (!accurate) log::warning("BRDF matrix accurate to {:.1e} only", result.error);
-  if (result.loss.kernel > kSharpKernelLoss) {
-    log::warning("the material is too sharp for {} and {} bands: {:.0f}% of its energy is lost",
-                 row_band_count, column_band_count, 100 * result.loss.kernel);
-  }
   return result;
+}
+
+void warn_of_losses(const BrdfMatrix& matrix, const std::string& name, double tolerance) {
+  // A sum of kMaterialLobeCount lobes may have the error of each.
+  if (matrix.error > static_cast<double>(kMaterialLobeCount) * tolerance) {
+    log::warning("{}: BRDF matrix accurate to {:.1e} only", name, matrix.error);
+  }
+  if (matrix.loss.kernel > kSharpKernelLoss) {
+    log::warning("{}: too sharp for {} and {} bands: {:.0f}% of its energy is lost", name,
+                 matrix.row_band_count, matrix.column_band_count, 100 * matrix.loss.kernel);
+  }
 }
 
 }  // namespace prt::brdf

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "brdf/brdf.h"
@@ -31,10 +32,14 @@ struct BrdfMatrix {
   BandLoss loss;     ///< of the mean of the channels
 };
 
-/// Sums the lobes' matrices, which are taken from the cache folder or put there. Warns, with the
-/// figure, when `loss.kernel` is above kSharpKernelLoss, and when the quadrature failed.
+/// Sums the lobes' matrices, which are taken from the cache folder or put there.
 BrdfMatrix brdf_matrix(const Brdf& brdf, int row_band_count, int column_band_count,
                        double tolerance = kMatrixTolerance,
                        const std::filesystem::path& folder = default_cache_folder());
+
+/// Warns, with the figure, when `loss.kernel` is above kSharpKernelLoss, and when the quadrature
+/// missed the tolerance. `name` is the material's, for the message.
+void warn_of_losses(const BrdfMatrix& matrix, const std::string& name,
+                    double tolerance = kMatrixTolerance);
 
 }  // namespace prt::brdf

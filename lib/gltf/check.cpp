@@ -233,7 +233,9 @@ void check_materials(const State& state) {
     const Json* pbr = find(material, "pbrMetallicRoughness");
     if (!pbr) continue;
     check_numbers(*pbr, "baseColorFactor", 4, where);
-    if (const Json* info = find(*pbr, "baseColorTexture")) {
+    for (const char* name : {"baseColorTexture", "metallicRoughnessTexture"}) {
+      const Json* info = find(*pbr, name);
+      if (!info) continue;
       required_index(*info, "index", state.count("textures"), where);
       optional_index(*info, "texCoord", kMaxTexcoordSets, where);
     }

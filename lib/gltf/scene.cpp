@@ -1,5 +1,6 @@
 // Document::scene: the default scene's triangles in world space.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -73,8 +74,7 @@ void read_reflection(const tinygltf::Material& from, mesh::Material& material) {
   material.has_anisotropy = static_cast<bool>(anisotropy);
   material.anisotropy_strength = anisotropy.number("anisotropyStrength", 0.0f, 0.0f, 1.0f);
   material.anisotropy_rotation = anisotropy.number("anisotropyRotation", 0.0f, -1e3f, 1e3f);
-  material.has_unread_textures = from.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
-                                 specular.has("specularTexture") ||
+  material.has_unread_textures = specular.has("specularTexture") ||
                                  specular.has("specularColorTexture") ||
                                  anisotropy.has("anisotropyTexture");
 }
@@ -84,7 +84,7 @@ class MaterialReader {
   MaterialReader(const Model& model, mesh::Scene& scene)
       : model_(model),
         scene_(scene),
-        image_of_view_(model.bufferViews.size(), -1),
+        images_(model.bufferViews.size(), {-1, -1}),
         pixels_left_(model.state.limits.max_image_pixels) {}
 
   void read_all() {
@@ -100,51 +100,63 @@ class MaterialReader {
     material.double_sided = from.doubleSided;
     read_reflection(from, material);
     std::copy(pbr.baseColorFactor.begin(), pbr.baseColorFactor.end(), &material.base_color.x);
-    if (pbr.baseColorTexture.index >= 0) {
-      read_texture(pbr.baseColorTexture, material, model_.where("material", index));
-    }
+    const Where where = model_.where("material", index);
+    read_texture(pbr.baseColorTexture, image::Content::colour, "base colour", where,
+                 {material.base_color_image, material.wrap_s, material.wrap_t});
+    read_texture(pbr.metallicRoughnessTexture, image::Content::data, "metallic-roughness", where,
+                 {material.metallic_roughness_image, material.metallic_roughness_wrap_s,
+                  material.metallic_roughness_wrap_t});
     return material;
   }
 
-  void read_texture(const tinygltf::TextureInfo& info, mesh::Material& material,
-                    const Where& where) {
+  /// Where a material keeps a texture.
+  struct Texture {
+    int& image;
+    mesh::Wrap &wrap_s, &wrap_t;
+  };
+
+  void read_texture(const tinygltf::TextureInfo& info, image::Content content, const char* name,
+                    const Where& where, const Texture& to) {
+    if (info.index < 0) return;
     const auto& texture = model_.textures[static_cast<std::size_t>(info.index)];
     if (info.texCoord != 0) {
-      log::warning("{}: {}: base colour texture on another set than TEXCOORD_0, ignored",
-                   where.file, where.element);
+      log::warning("{}: {}: {} texture on another set than TEXCOORD_0, ignored", where.file,
+                   where.element, name);
       return;
     }
     if (info.extensions.contains("KHR_texture_transform")) {
       log::warning("{}: {}: KHR_texture_transform ignored", where.file, where.element);
     }
     if (texture.source < 0) {
-      log::warning("{}: {}: base colour texture in a format of an extension, ignored", where.file,
-                   where.element);
+      log::warning("{}: {}: {} texture in a format of an extension, ignored", where.file,
+                   where.element, name);
       return;
     }
-    material.base_color_image = image_number(static_cast<std::size_t>(texture.source));
+    to.image = image_number(static_cast<std::size_t>(texture.source), content);
     if (texture.sampler >= 0) {
       const auto& sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
-      material.wrap_s = read_wrap(sampler.wrapS);
-      material.wrap_t = read_wrap(sampler.wrapT);
+      to.wrap_s = read_wrap(sampler.wrapS);
+      to.wrap_t = read_wrap(sampler.wrapT);
     }
   }
 
-  int image_number(std::size_t source) {
+  int image_number(std::size_t source, image::Content content) {
     const State& state = model_.state;
     const int view = state.element("images", source).at("bufferView").get<int>();
-    int& number = image_of_view_[static_cast<std::size_t>(view)];
+    int& number =
+        images_[static_cast<std::size_t>(view)][content == image::Content::colour ? 0 : 1];
     if (number >= 0) return number;
     number = static_cast<int>(scene_.images.size());
-    scene_.images.push_back(image::read_image(
-        model_.view_bytes(view), fmt::format("{}: image {}", state.file, source), pixels_left_));
+    scene_.images.push_back(image::read_image(model_.view_bytes(view),
+                                              fmt::format("{}: image {}", state.file, source),
+                                              pixels_left_, content));
     pixels_left_ -= scene_.images.back().pixel_count();
     return number;
   }
 
   const Model& model_;
   mesh::Scene& scene_;
-  std::vector<int> image_of_view_;  // images may share a view
+  std::vector<std::array<int, 2>> images_;  // of each view, as colours and as data
   std::size_t pixels_left_;
 };
 

@@ -152,7 +152,7 @@ void replace_non_finite(Image& image, const std::string& name) {
 }
 
 Image decode(const Format& format, std::span<const std::byte> bytes, const std::string& name,
-             std::size_t max_pixels) {
+             std::size_t max_pixels, Content content) {
   OIIO::Filesystem::IOMemReader reader(const_cast<std::byte*>(bytes.data()), bytes.size());
   const auto input = OIIO::ImageInput::create(format.plugin);
   if (!input) throw_failed(fmt::format("OpenImageIO lacks {}", format.title), {.file = name});
@@ -167,13 +167,13 @@ Image decode(const Format& format, std::span<const std::byte> bytes, const std::
       input->read_image(0, 0, 0, image.channel_count, OIIO::TypeDesc::FLOAT, image.pixels.data());
   const std::string error = input->geterror();
   if (!complete || !error.empty()) throw_damaged(format, name, error);
-  if (format.in_gltf) decode_srgb(image);
+  if (format.in_gltf && content == Content::colour) decode_srgb(image);
   replace_non_finite(image, name);
   return image;
 }
 
 Image decode_checked(std::span<const std::byte> bytes, const std::string& name,
-                     std::size_t max_pixels, bool only_gltf) {
+                     std::size_t max_pixels, bool only_gltf, Content content) {
   const Format& format = format_of(bytes, name, only_gltf);
   const std::string_view text = text_of(bytes);
   if ((format.plugin == "jpeg"sv && !has_jpeg_end(text)) ||
@@ -181,7 +181,7 @@ Image decode_checked(std::span<const std::byte> bytes, const std::string& name,
     throw_damaged(format, name, "no end of image");
   }
   try {
-    return decode(format, bytes, name, max_pixels);
+    return decode(format, bytes, name, max_pixels, content);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
@@ -216,12 +216,12 @@ std::vector<unsigned char> encode(const Image& image, const std::filesystem::pat
 }  // namespace
 
 Image read_image(const std::filesystem::path& path, std::size_t max_pixels) {
-  return decode_checked(read_file(path), path.string(), max_pixels, false);
+  return decode_checked(read_file(path), path.string(), max_pixels, false, Content::colour);
 }
 
-Image read_image(std::span<const std::byte> bytes, const std::string& name,
-                 std::size_t max_pixels) {
-  return decode_checked(bytes, name, max_pixels, true);
+Image read_image(std::span<const std::byte> bytes, const std::string& name, std::size_t max_pixels,
+                 Content content) {
+  return decode_checked(bytes, name, max_pixels, true, content);
 }
 
 void write_image(const std::filesystem::path& path, const Image& image, bool no_clobber) {

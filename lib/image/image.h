@@ -41,9 +41,12 @@ constexpr std::size_t kMaxPixels = std::size_t{1} << 28;
 /// Reads .exr .hdr .png .jpg …: format by the magic bytes, never by the name. Non-finite values are
 /// replaced by 0 and counted in a warning. Throws Error (bad_input).
 Image read_image(const std::filesystem::path& path, std::size_t max_pixels = kMaxPixels);
+/// What the numbers of 8-bit files are: colours, which are decoded, or others, taken as they are.
+enum class Content { colour, data };
+
 /// The same from memory; `name` is for messages. Only PNG and JPEG, the two formats of glTF.
 Image read_image(std::span<const std::byte> bytes, const std::string& name,
-                 std::size_t max_pixels = kMaxPixels);
+                 std::size_t max_pixels = kMaxPixels, Content content = Content::colour);
 
 /// Writes float EXR (ZIP) with channels R, G, B(, A), or 8-bit sRGB PNG, by the extension of
 /// `path`; atomically. Throws Error.

@@ -116,6 +116,25 @@ Vec3 albedo_at_point(const Scene& scene, const Primitive& primitive, std::size_t
                    interpolate(mesh.colors, corners, u, v, Vec4(1.0f)));
 }
 
+MetallicRoughness metallic_roughness_at_vertex(const Scene& scene, const Primitive& primitive,
+                                               std::size_t vertex) {
+  static const Material kNone;
+  const Material& material = primitive.material < 0
+                                 ? kNone
+                                 : scene.materials[static_cast<std::size_t>(primitive.material)];
+  MetallicRoughness result{material.metallic, material.roughness};
+  if (material.metallic_roughness_image >= 0) {
+    const TriangleMesh& mesh = primitive.mesh;
+    const Vec3 texel =
+        sample_bilinear(scene.images[static_cast<std::size_t>(material.metallic_roughness_image)],
+                        mesh.texcoords.empty() ? Vec2(0.0f) : mesh.texcoords[vertex],
+                        material.metallic_roughness_wrap_s, material.metallic_roughness_wrap_t);
+    result.metallic *= std::clamp(texel.z, 0.0f, 1.0f);
+    result.roughness *= std::clamp(texel.y, 0.0f, 1.0f);
+  }
+  return result;
+}
+
 std::string mesh_hash(const Scene& scene) {
   Hasher hasher;
   for (const Primitive& primitive : scene.primitives) {

@@ -24,14 +24,16 @@ struct Material {
   int base_color_image = -1;                ///< index into Scene::images, -1: none
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
   bool double_sided = false;
-  float metallic = 0.0f, roughness = 1.0f;  ///< in [0, 1]
+  float metallic = 0.0f, roughness = 1.0f;  ///< factors in [0, 1]
+  int metallic_roughness_image = -1;        ///< index into Scene::images, -1: none
+  Wrap metallic_roughness_wrap_s = Wrap::repeat, metallic_roughness_wrap_t = Wrap::repeat;
   float ior = 1.5f;                         ///< >= 1, or 0 for infinity
   float specular = 1.0f;                    ///< in [0, 1]
   Vec3 specular_color{1.0f, 1.0f, 1.0f};    ///< >= 0
   bool has_anisotropy = false;
   float anisotropy_strength = 0.0f;  ///< in [0, 1]
   float anisotropy_rotation = 0.0f;  ///< radians, counter-clockwise from the tangent
-  bool has_unread_textures = false;  ///< of these factors; only that of the base colour is read
+  bool has_unread_textures = false;  ///< of specular and anisotropy
 };
 
 struct Primitive {
@@ -44,7 +46,7 @@ struct Primitive {
 struct Scene {
   std::vector<Primitive> primitives;
   std::vector<Material> materials;
-  std::vector<image::Image> images;  ///< linear RGB(A) base colour textures
+  std::vector<image::Image> images;  ///< textures, linear: colours, or metallic and roughness
 
   std::size_t vertex_count() const;
   std::size_t triangle_count() const;
@@ -61,6 +63,13 @@ Vec3 albedo_at_vertex(const Scene& scene, const Primitive& primitive, std::size_
 /// At the point of a triangle with barycentric weights (1-u-v, u, v).
 Vec3 albedo_at_point(const Scene& scene, const Primitive& primitive, std::size_t triangle, float u,
                      float v);
+
+/// Factor × texture (blue: metallic, green: roughness; glTF 2.0 §3.9.2), bilinear, in [0, 1].
+struct MetallicRoughness {
+  float metallic, roughness;
+};
+MetallicRoughness metallic_roughness_at_vertex(const Scene& scene, const Primitive& primitive,
+                                               std::size_t vertex);
 
 /// Content hash of what a transfer is baked from and belongs to: positions, normals, albedo of the
 /// vertices and indices of all primitives. Of a texture, what lies between the vertices is left

@@ -26,9 +26,13 @@ int choose_channel_count(const mesh::Scene& scene, ChannelMode mode, bool betwee
       if (is_coloured(mesh::albedo_at_vertex(scene, primitive, v))) return 3;
     }
   }
+  const auto has_coloured_texture = [&](const mesh::Material& material) {
+    return material.base_color_image >= 0 &&
+           is_coloured(scene.images[static_cast<std::size_t>(material.base_color_image)]);
+  };
   const bool textured =
-      between_vertices && std::any_of(scene.images.begin(), scene.images.end(),
-                                      [](const image::Image& i) { return is_coloured(i); });
+      between_vertices &&
+      std::any_of(scene.materials.begin(), scene.materials.end(), has_coloured_texture);
   return textured ? 3 : 1;
 }
 

@@ -34,7 +34,7 @@ namespace prt::transfer {
 
 struct MatrixOptions {
   /// By brdf::kBrdfSyntax. Base colours are factors of the BRDFs that it names; from-material reads
-  /// the factors of mesh::Material, with the vertex's albedo as base colour.
+  /// mesh::Material, at each vertex where there are textures.
   std::string brdf = "from-material";
   int band_count = 5;        ///< of the light, 1 to kMaxMatrixBandCount
   int row_count = 25;        ///< of exit radiance: n², or n² - 1 without l = 1, m = 0
@@ -46,7 +46,8 @@ struct MatrixOptions {
   std::uint64_t seed = 1;  ///< turns the set of directions
   /// Of incident and of exit radiance; others than least squares are for comparison.
   sh::HemisphereProjection projection = sh::HemisphereProjection::least_squares;
-  /// Where the files of bounces are: field_bytes() once, for more than one bounce twice.
+  /// Where the fields of bounces are: half of the matrices' size, for more than one bounce all of
+  /// it.
   std::filesystem::path scratch_folder = std::filesystem::temp_directory_path();
 };
 
@@ -63,8 +64,11 @@ class MatrixTransfer {
 
   /// All of the signal but its values.
   const signal::TransferSignal& header() const { return header_; }
-  /// Of a field in the scratch folder; 0 without bounces.
-  std::size_t field_bytes() const { return field_ ? field_->byte_count() : 0; }
+  const MatrixSurfaces& surfaces() const { return surfaces_; }
+  /// Of all files that were in the scratch folder at once.
+  std::size_t scratch_bytes() const {
+    return field_ ? field_->byte_count() * (header_.bounce_count > 1 ? 2 : 1) : 0;
+  }
 
   /// Rows of the signal of vertices [first, first + count), ordered as TransferSignal says:
   /// count × header().dimension() values. All processors; the same bytes for any number. Throws

@@ -1,8 +1,8 @@
 #include "transfer/matrix_surface.h"
 
 #include <algorithm>
+#include <cmath>
 
-#include "brdf/brdf_matrix.h"
 #include "brdf/scene_material.h"
 #include "core/log.h"
 #include "linalg/product.h"
@@ -15,6 +15,20 @@ namespace {
 
 using linalg::MatrixD;
 using linalg::Transpose;
+
+/// Lobes that some base colour or, with a texture, some metallic gives a colour.
+std::vector<std::size_t> lobes_of(brdf::MetallicRoughness material, bool textured) {
+  const auto colours = brdf::material_colours(material);
+  material.metallic = textured ? 0 : material.metallic;
+  const auto others = brdf::material_colours(material);
+  std::vector<std::size_t> lobes;
+  for (std::size_t i = 0; i < brdf::kMaterialLobeCount; ++i) {
+    if (colours[i] != brdf::Colour(0) || others[i] != brdf::Colour(0)) lobes.push_back(i);
+  }
+  return lobes;
+}
+
+bool is_microfacet(std::size_t lobe) { return lobe < 2; }
 
 std::vector<float> transposed(const std::vector<float>& matrix, std::size_t row_count) {
   const std::size_t column_count = matrix.size() / row_count;
@@ -29,11 +43,10 @@ std::vector<float> transposed(const std::vector<float>& matrix, std::size_t row_
 
 }  // namespace
 
-std::vector<float> exit_operator(const brdf::Brdf& brdf, const SurfaceOptions& options) {
+std::vector<float> exit_operator(const brdf::BrdfMatrix& matrix, const SurfaceOptions& options) {
   const std::vector<int> rows = sh::hemisphere_functions(options.row_count);
   const std::vector<int> columns =
       sh::hemisphere_functions(sh::coefficient_count(options.band_count));
-  const auto matrix = brdf::brdf_matrix(brdf, sh::band_count_of(rows), options.band_count);
   const std::size_t m = rows.size(), n = columns.size();
   std::vector<double> b(m * n), left(m * n), both(m * n);
   for (std::size_t i = 0; i < m; ++i) {
@@ -48,71 +61,132 @@ std::vector<float> exit_operator(const brdf::Brdf& brdf, const SurfaceOptions& o
   return {both.begin(), both.end()};
 }
 
+// Lagrange's polynomials.
+RoughnessBlend blend_roughness(double roughness) {
+  const double x = roughness * kRoughnessSteps;
+  RoughnessBlend blend{std::clamp(static_cast<int>(std::floor(x)) - 1, 0, kRoughnessSteps - 3),
+                       {1, 1, 1, 1}};
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      if (k != i) blend.weights[static_cast<std::size_t>(i)] *= (x - blend.first - k) / (i - k);
+    }
+  }
+  return blend;
+}
+
 MatrixSurfaces::MatrixSurfaces(const mesh::Scene& scene, const SurfaceOptions& options,
                                int channel_count)
-    : scene_(scene), channel_count_(channel_count) {
-  const auto rows = static_cast<std::size_t>(options.row_count);
-  operator_size_ = rows * static_cast<std::size_t>(sh::coefficient_count(options.band_count));
-  const auto brdf = brdf::parse_brdf(options.brdf);
-  from_material_ = !brdf;
-  if (brdf) {
-    surfaces_.push_back({{}, {}, {transposed(exit_operator(*brdf, options), rows)}});
+    : scene_(scene),
+      options_(options),
+      channel_count_(channel_count),
+      operator_size_(static_cast<std::size_t>(options.row_count) *
+                     static_cast<std::size_t>(sh::coefficient_count(options.band_count))) {
+  if (const auto brdf = brdf::parse_brdf(options.brdf)) {
+    named_ = make_operator(*brdf);
+    note_loss(*brdf, options.brdf);
     return;
   }
-  for (const mesh::Material& material : scene.materials) {
-    if (material.has_unread_textures) {
-      log::warning("material \"{}\": textures of roughness, specular and anisotropy are ignored",
-                   material.name);
+  find_used();
+  static const mesh::Material kNone;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (surfaces_[i].used)
+      fill(surfaces_[i], i < scene.materials.size() ? scene.materials[i] : kNone);
+  }
+}
+
+void MatrixSurfaces::find_used() {
+  surfaces_.resize(scene_.materials.size() + 1);
+  for (const mesh::Primitive& primitive : scene_.primitives) {
+    Surface& surface = primitive.material < 0
+                           ? surfaces_.back()
+                           : surfaces_[static_cast<std::size_t>(primitive.material)];
+    surface.used = true;
+    for (std::size_t v = 0; v < primitive.mesh.vertex_count(); ++v) {
+      const double roughness =
+          double{mesh::metallic_roughness_at_vertex(scene_, primitive, v).roughness};
+      surface.lowest = std::min(surface.lowest, roughness);
+      surface.highest = std::max(surface.highest, roughness);
     }
-    surfaces_.push_back(surface_of(material, options));
   }
-  surfaces_.push_back(surface_of({}, options));
 }
 
-// Lobes that are black whatever the base colour is are left out.
-MatrixSurfaces::Surface MatrixSurfaces::surface_of(const mesh::Material& from,
-                                                   const SurfaceOptions& options) const {
-  Surface surface{brdf::metallic_roughness(from), {}, {}};
-  const auto lobes = brdf::material_lobes(surface.material);
-  const auto colours = brdf::material_colours(surface.material);  // of a white base
-  const double rotation = surface.material.has_anisotropy ? from.anisotropy_rotation : 0.0;
-  for (std::size_t i = 0; i < brdf::kMaterialLobeCount; ++i) {
-    if (colours[i] == brdf::Colour(0)) continue;
-    const brdf::Brdf lobe{{{brdf::Colour(1), lobes[i]}}, rotation};
-    surface.terms.push_back(
-        transposed(exit_operator(lobe, options), static_cast<std::size_t>(options.row_count)));
-    surface.lobes.push_back(i);
+void MatrixSurfaces::fill(Surface& surface, const mesh::Material& from) {
+  if (from.has_unread_textures) {
+    log::warning("material \"{}\": textures of specular and anisotropy are ignored", from.name);
   }
-  return surface;
-}
-
-std::vector<Vec3> MatrixSurfaces::term_colours(const Surface& surface, const Vec3& albedo) const {
-  if (!from_material_) return {channel_albedo(albedo, channel_count_)};
+  surface.material = brdf::metallic_roughness(from);
   brdf::MetallicRoughness material = surface.material;
-  material.base_color = brdf::Colour(albedo);
-  const auto colours = brdf::material_colours(material);
-  std::vector<Vec3> terms;
-  for (const std::size_t lobe : surface.lobes) {
-    terms.push_back(channel_albedo(Vec3(colours[lobe]), channel_count_));
+  const bool blended = surface.lowest < surface.highest;
+  surface.first = blended ? blend_roughness(surface.lowest).first : 0;
+  const int count = blended ? blend_roughness(surface.highest).first + 4 - surface.first : 1;
+  for (const std::size_t lobe : lobes_of(material, from.metallic_roughness_image >= 0)) {
+    Term term{lobe, {}};
+    for (int k = 0; k < (is_microfacet(lobe) ? count : 1); ++k) {
+      material.roughness =
+          blended ? static_cast<double>(surface.first + k) / kRoughnessSteps : surface.lowest;
+      term.operators.push_back(
+          make_operator({{{brdf::Colour(1), brdf::material_lobes(material)[lobe]}},
+                         material.has_anisotropy ? material.anisotropy_rotation : 0.0}));
+    }
+    surface.terms.push_back(std::move(term));
   }
-  return terms;
+  material.roughness = surface.lowest;
+  material.base_color =
+      brdf::Colour(double{from.base_color.x}, double{from.base_color.y}, double{from.base_color.z});
+  note_loss(brdf::make_brdf(material), from.name.empty() ? "a material" : from.name);
+}
+
+std::vector<float> MatrixSurfaces::make_operator(const brdf::Brdf& brdf) const {
+  const int row_bands = sh::band_count_of(sh::hemisphere_functions(options_.row_count));
+  return transposed(
+      exit_operator(brdf::brdf_matrix(brdf, row_bands, options_.band_count), options_),
+      static_cast<std::size_t>(options_.row_count));
+}
+
+void MatrixSurfaces::note_loss(const brdf::Brdf& brdf, const std::string& name) {
+  const int row_bands = sh::band_count_of(sh::hemisphere_functions(options_.row_count));
+  const brdf::BrdfMatrix matrix = brdf::brdf_matrix(brdf, row_bands, options_.band_count);
+  brdf::warn_of_losses(matrix, name);
+  losses_.push_back({name, matrix.loss, matrix.error});
 }
 
 void MatrixSurfaces::at_vertex(const mesh::Primitive& primitive, std::size_t vertex,
                                std::span<float> operators) const {
-  const bool shared = !from_material_ || primitive.material < 0;
-  const Surface& surface =
-      shared ? surfaces_.back() : surfaces_[static_cast<std::size_t>(primitive.material)];
-  const Vec3 albedo = mesh::albedo_at_vertex(scene_, primitive, vertex);
-  const std::vector<Vec3> colours = term_colours(surface, albedo);
   std::fill(operators.begin(), operators.end(), 0.0f);
+  if (named_.empty()) return add_material(primitive, vertex, operators);
+  const Vec3 albedo = mesh::albedo_at_vertex(scene_, primitive, vertex);
+  add(channel_albedo(albedo, channel_count_), named_, operators);
+}
+
+void MatrixSurfaces::add_material(const mesh::Primitive& primitive, std::size_t vertex,
+                                  std::span<float> operators) const {
+  const Surface& surface = primitive.material < 0
+                               ? surfaces_.back()
+                               : surfaces_[static_cast<std::size_t>(primitive.material)];
+  const auto [metallic, roughness] = mesh::metallic_roughness_at_vertex(scene_, primitive, vertex);
+  brdf::MetallicRoughness material = surface.material;
+  material.metallic = double{metallic};
+  material.base_color = brdf::Colour(mesh::albedo_at_vertex(scene_, primitive, vertex));
+  const auto colours = brdf::material_colours(material);
+  const RoughnessBlend blend = blend_roughness(double{roughness});
+  for (const Term& term : surface.terms) {
+    const Vec3 colour = channel_albedo(Vec3(colours[term.lobe]), channel_count_);
+    if (term.operators.size() == 1) {
+      add(colour, term.operators[0], operators);
+      continue;
+    }
+    for (std::size_t k = 0; k < blend.weights.size(); ++k) {
+      add(colour * static_cast<float>(blend.weights[k]),
+          term.operators[static_cast<std::size_t>(blend.first - surface.first) + k], operators);
+    }
+  }
+}
+
+void MatrixSurfaces::add(const Vec3& factor, const std::vector<float>& from,
+                         std::span<float> operators) const {
   for (int c = 0; c < channel_count_; ++c) {
     float* to = &operators[static_cast<std::size_t>(c) * operator_size_];
-    for (std::size_t t = 0; t < surface.terms.size(); ++t) {
-      const float colour = colours[t][c];
-      const float* from = surface.terms[t].data();
-      for (std::size_t i = 0; i < operator_size_; ++i) to[i] += colour * from[i];
-    }
+    for (std::size_t i = 0; i < operator_size_; ++i) to[i] += factor[c] * from[i];
   }
 }
 

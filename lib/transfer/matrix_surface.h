@@ -1,13 +1,19 @@
 // What the surfaces of a scene make of incident radiance: the operators A⁻¹ B A⁻¹ of
 // transfer/matrix.h at each vertex, from the options' BRDF or from glTF's materials.
+//
+// A material's operator is a sum over its lobes (brdf::material_lobes), whose colours follow from
+// the base colour and metallic of the vertex. Where a texture changes the roughness, those of the
+// microfacet lobes are cubics in it through four of the nodes 0, 1/12, … 1: within kBlendError of
+// the exact ones.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "brdf/brdf.h"
+#include "brdf/brdf_matrix.h"
 #include "mesh/scene.h"
 #include "sh/hemisphere.h"
 
@@ -20,13 +26,33 @@ struct SurfaceOptions {
   sh::HemisphereProjection projection = sh::HemisphereProjection::least_squares;
 };
 
-/// A⁻¹ B A⁻¹, row_count × band_count² values. Warns as brdf::brdf_matrix does.
-std::vector<float> exit_operator(const brdf::Brdf& brdf, const SurfaceOptions& options);
+/// A⁻¹ B A⁻¹ of the BRDF's first channel, row_count × band_count² values.
+std::vector<float> exit_operator(const brdf::BrdfMatrix& matrix, const SurfaceOptions& options);
+
+constexpr int kRoughnessSteps = 12;
+/// Of exit radiance, relative and RMS over the hemisphere and all light of five bands.
+constexpr double kBlendError = 2e-3;
+
+/// The cubic through nodes first … first + 3 of the roughness.
+struct RoughnessBlend {
+  int first;
+  std::array<double, 4> weights;
+};
+RoughnessBlend blend_roughness(double roughness);
+
+/// What the bands cannot show of a BRDF.
+struct SurfaceLoss {
+  std::string name;  ///< of the material, or the BRDF that the options name
+  brdf::BandLoss loss;
+  double matrix_error;  ///< of an entry of B
+};
 
 class MatrixSurfaces {
  public:
-  /// Throws Error (usage). The scene must outlive this.
+  /// Warns of losses. Throws Error (usage). The scene must outlive this.
   MatrixSurfaces(const mesh::Scene& scene, const SurfaceOptions& options, int channel_count);
+
+  const std::vector<SurfaceLoss>& losses() const { return losses_; }
 
   /// Values that at_vertex() gives for a channel.
   std::size_t operator_size() const { return operator_size_; }
@@ -35,21 +61,34 @@ class MatrixSurfaces {
                  std::span<float> operators) const;
 
  private:
-  /// One term a lobe: colour times operator. A BRDF that the options name is one term, whose colour
-  /// is the albedo.
-  struct Surface {
-    brdf::MetallicRoughness material{};  ///< but its base colour
-    std::vector<std::size_t> lobes{};    ///< of brdf::material_lobes(), a term each
-    std::vector<std::vector<float>> terms{};
+  /// A lobe at all nodes from `first` on, or, where it does not change, once.
+  struct Term {
+    std::size_t lobe;  ///< of brdf::material_lobes()
+    std::vector<std::vector<float>> operators;
   };
-  Surface surface_of(const mesh::Material& from, const SurfaceOptions& options) const;
-  std::vector<Vec3> term_colours(const Surface& surface, const Vec3& albedo) const;
+  struct Surface {
+    bool used = false;
+    brdf::MetallicRoughness material{};  ///< but its base colour, metallic and roughness
+    double lowest = 1, highest = 0;      ///< roughness
+    int first = 0;                       ///< node
+    std::vector<Term> terms{};
+  };
+
+  void find_used();
+  void fill(Surface& surface, const mesh::Material& from);
+  std::vector<float> make_operator(const brdf::Brdf& brdf) const;
+  void note_loss(const brdf::Brdf& brdf, const std::string& name);
+  void add_material(const mesh::Primitive& primitive, std::size_t vertex,
+                    std::span<float> operators) const;
+  void add(const Vec3& factor, const std::vector<float>& from, std::span<float> operators) const;
 
   const mesh::Scene& scene_;
+  SurfaceOptions options_;
   int channel_count_;
   std::size_t operator_size_;
-  bool from_material_ = false;
-  std::vector<Surface> surfaces_;  ///< a material each, that of material -1 last; or a single one
+  std::vector<float> named_;       ///< operator of the BRDF that the options name
+  std::vector<Surface> surfaces_;  ///< or a material each, that of material -1 last
+  std::vector<SurfaceLoss> losses_;
 };
 
 }  // namespace prt::transfer

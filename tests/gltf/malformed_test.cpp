@@ -181,6 +181,7 @@ TEST(GltfRead, RejectsBadMaterials) {
   };
   EXPECT_ERROR(of({{"baseColorFactor", {1, 1, 1}}}), "material 0: bad \"baseColorFactor\"");
   EXPECT_ERROR(of({{"baseColorTexture", {{"index", 0}}}}), "material 0: bad \"index\"");
+  EXPECT_ERROR(of({{"metallicRoughnessTexture", {{"index", 0}}}}), "material 0: bad \"index\"");
   EXPECT_ERROR(with("/textures", {{{"source", 0}}}), "texture 0: bad \"source\"");
   // what only tinygltf looks at
   EXPECT_ERROR(with("/materials", {{{"emissiveFactor", {1}}}}), "bad glTF: Array length");

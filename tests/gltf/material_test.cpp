@@ -11,7 +11,7 @@ namespace {
 using nlohmann::ordered_json;
 
 /// The sample scene with another JSON object as its second material, read back.
-mesh::Material read_material(const ordered_json& material) {
+mesh::Scene read_scene(const ordered_json& material) {
   std::vector<std::byte> glb = Document::from_scene(samples::scene()).glb_bytes();
   std::uint32_t size = 0;
   std::memcpy(&size, &glb[12], 4);
@@ -27,7 +27,11 @@ mesh::Material read_material(const ordered_json& material) {
   const auto length = static_cast<std::uint32_t>(text.size());
   std::memcpy(&changed[8], &total, 4);
   std::memcpy(&changed[12], &length, 4);
-  return Document::parse(changed, "a.glb").scene().materials[1];
+  return Document::parse(changed, "a.glb").scene();
+}
+
+mesh::Material read_material(const ordered_json& material) {
+  return read_scene(material).materials[1];
 }
 
 TEST(GltfMaterial, HasTheDefaultsOfTheSpecification) {
@@ -80,10 +84,25 @@ TEST(GltfMaterial, LimitsWhatIsOutOfRangeAndIgnoresWhatIsNoNumber) {
   EXPECT_EQ(odd.anisotropy_strength, 0);
 }
 
+// Numbers, not colours: the sample's image is decoded once more without sRGB, and a primitive's
+// vertices have the factors times its green and blue.
+TEST(GltfMaterial, ReadsTheTextureOfMetallicAndRoughness) {
+  mesh::Scene scene = read_scene(ordered_json::parse(R"({"pbrMetallicRoughness": {
+    "metallicFactor": 0.5, "metallicRoughnessTexture": {"index": 0}}})"));
+  EXPECT_EQ(scene.materials[1].metallic_roughness_image, 1);
+  EXPECT_EQ(scene.materials[0].metallic_roughness_image, -1);
+  EXPECT_FALSE(scene.materials[1].has_unread_textures);
+  ASSERT_EQ(scene.images.size(), 2u);
+  EXPECT_EQ(scene.images[1].pixels, scene.images[0].pixels);  // of 0 and 1 only
+  mesh::Primitive& primitive = scene.primitives[0];
+  primitive.material = 1;
+  primitive.mesh.texcoords.assign(primitive.mesh.vertex_count(), Vec2(0.25f, 0.75f));  // blue
+  const auto at = mesh::metallic_roughness_at_vertex(scene, primitive, 0);
+  EXPECT_EQ(at.metallic, 0.5f);
+  EXPECT_EQ(at.roughness, 0.0f);
+}
+
 TEST(GltfMaterial, SaysThatTexturesOfFactorsAreNotRead) {
-  EXPECT_TRUE(read_material(ordered_json::parse(R"({"pbrMetallicRoughness":
-    {"metallicRoughnessTexture": {"index": 0}}})"))
-                  .has_unread_textures);
   EXPECT_TRUE(read_material(ordered_json::parse(R"({"extensions": {"KHR_materials_anisotropy":
     {"anisotropyTexture": {"index": 0}}}})"))
                   .has_unread_textures);

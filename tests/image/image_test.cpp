@@ -95,6 +95,12 @@ TEST_F(ImageFile, MemoryTakesPngAndRejectsExr) {
   write_image(folder_ / "a.exr", image);
   const std::vector<std::byte> png = read_file(folder_ / "a.png");
   EXPECT_EQ(read_image(png, "image 0").pixels, read_image(folder_ / "a.png").pixels);
+  const Image data = read_image(png, "image 0", kMaxPixels, Content::data);
+  const Image colour = read_image(png, "image 0");
+  ASSERT_EQ(data.pixels.size(), colour.pixels.size());
+  for (std::size_t i = 0; i < data.pixels.size(); ++i) {
+    EXPECT_NEAR(linear_from_srgb(data.pixels[i]), colour.pixels[i], 1e-6f);
+  }
   const std::vector<std::byte> exr = read_file(folder_ / "a.exr");
   const std::string message = expect_bad_input([&] { read_image(exr, "image 0"); });
   EXPECT_NE(message.find("image 0"), std::string::npos);
