@@ -64,15 +64,4 @@ std::span<const ray::Hit> Hemisphere::hits() {
   return hits_;
 }
 
-std::span<const ray::Hit> Hemisphere::trace_closest(std::size_t vertex) {
-  const std::size_t count = aim(vertex);
-  hits_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    rays_[i].origin = origin_;
-    rays_[i].direction = directions_[above_[i]];
-  }
-  index_.engine().closest_hit({rays_.data(), count}, hits_);
-  return hits_;
-}
-
 }  // namespace prt::transfer

@@ -25,14 +25,9 @@ class Hemisphere {
   std::span<const WeightedRow> visible();
   std::size_t visible_count() const { return above_count_ - blocked_count_; }
 
-  /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked().
+  /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked(). Whether
+  /// anything is hit is much faster to find out first. kNoHit where the two disagree, along edges.
   std::span<const ray::Hit> hits();
-
-  /// Closest hits in all directions above the vertex's horizon, kNoHit where nothing is hit.
-  std::span<const ray::Hit> trace_closest(std::size_t vertex);
-  /// Cosine and direction number of ray `i` of trace_closest.
-  float cosine(std::size_t i) const { return cosines_[above_[i]]; }
-  std::uint32_t direction(std::size_t i) const { return above_[i]; }
 
   /// Rays cast so far, of both kinds.
   std::uint64_t rays_cast() const { return rays_cast_; }

@@ -100,14 +100,16 @@ class MatrixReflection::Gather {
     const std::size_t visible_stride = visible.size() / owner_.visibility_.stand_ins.size();
     for (std::size_t i = 0; i < n; ++i) rest[i] -= double{visible[vertex * visible_stride + i]};
 
-    const std::span<const ray::Hit> hits = hemisphere_.trace_closest(vertex);
+    hemisphere_.trace(vertex);
+    const std::span<const ray::Hit> hits = hemisphere_.hits();
     std::size_t blocked_count = 0;
     for (std::size_t h = 0; h < hits.size(); ++h) {
       if (hits[h].triangle == ray::kNoHit) continue;
       ++blocked_count;
-      const float* y = &owner_.direction_basis_[hemisphere_.direction(h) * n];
+      const std::uint32_t direction = hemisphere_.blocked()[h].row;
+      const float* y = &owner_.direction_basis_[direction * n];
       for (std::size_t i = 0; i < n; ++i) rest[i] -= double{y[i]};
-      if (!hits[h].back_face) add_slot(hits[h], hemisphere_.direction(h));
+      if (!hits[h].back_face) add_slot(hits[h], direction);
     }
     directions_of_slots_.push_back(kMean);
     barycentrics_.resize(3 * directions_of_slots_.size());

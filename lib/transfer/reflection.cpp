@@ -52,20 +52,22 @@ std::uint64_t Reflection::trace_block(std::size_t begin, std::size_t end, Block&
   Hemisphere hemisphere(index_, directions_);
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t vertex = index_.vertex_order()[i];
-    const auto hits = hemisphere.trace_closest(vertex);
-    block.scales.push_back(pack(vertex, hemisphere, hits, block.hits));
+    hemisphere.trace(vertex);
+    block.scales.push_back(pack(vertex, hemisphere, block.hits));
     block.ends.push_back(static_cast<std::uint32_t>(block.hits.size()));
   }
   return hemisphere.rays_cast();
 }
 
-float Reflection::pack(std::size_t vertex, const Hemisphere& hemisphere,
-                       std::span<const ray::Hit> hits, std::vector<PackedHit>& packed) const {
+float Reflection::pack(std::size_t vertex, Hemisphere& hemisphere,
+                       std::vector<PackedHit>& packed) const {
+  const std::span<const ray::Hit> hits = hemisphere.hits();
   double cosine_sum = 0.0;  // of all blocked directions, those that end at a black back too
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const ray::Hit& hit = hits[i];
     if (hit.triangle == ray::kNoHit) continue;
-    cosine_sum += hemisphere.cosine(i);
+    const float cosine = hemisphere.blocked()[i].weight;
+    cosine_sum += cosine;
     if (hit.back_face) continue;
     const SceneIndex::Place at = index_.triangle_place(hit.triangle);
     const Vec3 albedo = channel_albedo(
@@ -75,7 +77,7 @@ float Reflection::pack(std::size_t vertex, const Hemisphere& hemisphere,
     packed.push_back({hit.triangle,
                       pack_unit(hit.u),
                       pack_unit(hit.v),
-                      pack_unit(hemisphere.cosine(i)),
+                      pack_unit(cosine),
                       {pack_unit(albedo.x), pack_unit(albedo.y), pack_unit(albedo.z)}});
   }
   return cosine_sum > 0.0 ? static_cast<float>(blocked_[vertex] / cosine_sum) : 0.0f;

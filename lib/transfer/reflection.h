@@ -51,9 +51,8 @@ class Reflection {
 
   /// Traces the vertices [begin, end) of vertex_order(). Returns the number of rays cast.
   std::uint64_t trace_block(std::size_t begin, std::size_t end, Block& block) const;
-  /// Appends a vertex's hits; returns the scale of its sum.
-  float pack(std::size_t vertex, const Hemisphere& hemisphere, std::span<const ray::Hit> hits,
-             std::vector<PackedHit>& packed) const;
+  /// Appends hits of the vertex last traced; returns the scale of its sum.
+  float pack(std::size_t vertex, Hemisphere& hemisphere, std::vector<PackedHit>& packed) const;
   GatherTerm unpack(const PackedHit& hit, float scale) const;
   std::uint64_t gather_block(std::size_t begin, std::size_t end, const float* field,
                              std::size_t columns, float* next) const;
