@@ -82,7 +82,8 @@ BENCHMARK_CAPTURE(draw_frames, uncompressed, Draw::uncompressed, false)
 /// Rotating the light and the constants t_i·l of all clusters, on one CPU thread.
 void change_light(benchmark::State& state) {
   const auto band_count = static_cast<int>(state.range(0));
-  ClusterConstants constants(random_transfer(1, band_count, 3, kClusterCount, kComponentCount));
+  ClusterConstants constants(random_transfer(1, band_count, 3, kClusterCount, kComponentCount),
+                             exit_layout(1, 1));
   const sh::Light light = test_light(band_count);
   float degrees = 0;
   for (auto _ : state)

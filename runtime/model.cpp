@@ -1,11 +1,15 @@
 #include "runtime/model.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
 #include "core/error.h"
 #include "core/log.h"
 #include "gltf/document.h"
+#include "mesh/frame.h"
+#include "sh/hemisphere.h"
 
 namespace prt::runtime {
 
@@ -16,9 +20,34 @@ void check_transfer(std::size_t vertex_count, std::size_t found_vertex_count, in
     throw_bad_input(
         "the transfer has another number of vertices than the model",
         {.found = std::to_string(found_vertex_count), .expected = std::to_string(vertex_count)});
-  if (row_count != 1)
-    throw_bad_input("only diffuse transfer can be drawn",
-                    {.found = std::to_string(row_count) + " exit rows", .expected = "1"});
+  if (row_count == 1) return;
+  try {
+    sh::hemisphere_functions(row_count);
+  } catch (const Error&) {
+    throw_bad_input("the transfer's exit rows are no set of hemispherical functions",
+                    {.found = std::to_string(row_count) + " rows",
+                     .expected = "1, or n² or n² - 1 for n bands"});
+  }
+}
+
+void check_alike(const gltf::PrecomputedTransfer& transfer, const signal::TransferSignal& signal) {
+  const auto shape = [](const auto& t) {
+    return fmt::format("{} bands, {} rows, {} channels", t.band_count, t.row_count,
+                       t.channel_count);
+  };
+  if (shape(signal) != shape(transfer))
+    throw_bad_input("compressed and uncompressed transfer differ",
+                    {.found = shape(signal), .expected = shape(transfer)});
+}
+
+void add_frames(const mesh::Scene& scene, Model& model) {
+  for (const mesh::Primitive& primitive : scene.primitives)
+    for (std::size_t v = 0; v < primitive.mesh.vertex_count(); ++v) {
+      const mesh::Frame frame = mesh::frame_at_vertex(primitive.mesh, v);
+      const float side = frame.z.cross(frame.x).dot(frame.y) < 0.0f ? -1.0f : 1.0f;
+      model.normals.push_back(frame.z);
+      model.tangents.emplace_back(frame.x.x, frame.x.y, frame.x.z, side);
+    }
 }
 
 void check_belongs_to(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
@@ -54,6 +83,10 @@ int Model::band_count() const {
   return transfer ? transfer->band_count : signal ? signal->band_count : 0;
 }
 
+int Model::row_count() const {
+  return transfer ? transfer->row_count : signal ? signal->row_count : 1;
+}
+
 Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransfer> transfer,
                  std::optional<signal::TransferSignal> signal) {
   Model model;
@@ -66,8 +99,10 @@ Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransf
   const std::size_t vertex_count = model.positions.size();
   if (transfer) check_transfer(vertex_count, transfer->encoding.point_count, transfer->row_count);
   if (signal) check_transfer(vertex_count, signal->vertex_count(), signal->row_count);
+  if (transfer && signal) check_alike(*transfer, *signal);
   model.transfer = std::move(transfer);
   model.signal = std::move(signal);
+  if (model.row_count() > 1) add_frames(scene, model);
   return model;
 }
 
@@ -92,10 +127,6 @@ Model load_model(const std::filesystem::path& glb, const std::filesystem::path& 
 
 std::vector<float> relative_errors(const Model& model) {
   if (!model.transfer || !model.signal) return {};
-  if (model.transfer->encoding.dimension != model.signal->dimension())
-    throw_bad_input("compressed and uncompressed transfer differ in bands or channels",
-                    {.found = std::to_string(model.signal->dimension()) + " coefficients",
-                     .expected = std::to_string(model.transfer->encoding.dimension)});
   const std::vector<double> errors =
       cpca::point_errors(model.transfer->encoding, model.signal->values);
   double energy = 0.0;

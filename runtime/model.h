@@ -18,14 +18,21 @@ namespace prt::runtime {
 struct Model {
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> indices;
+  /// Frames of the vertices (mesh/frame.h) of glossy transfer, else empty: x in xyz, w is -1 where
+  /// the frame is left-handed.
+  std::vector<Vec3> normals;
+  std::vector<Vec4> tangents;
   camera::Sphere bounds;
   std::optional<gltf::PrecomputedTransfer> transfer;  ///< compressed
   std::optional<signal::TransferSignal> signal;       ///< uncompressed
 
   int band_count() const;  ///< of the transfer; 0 without any
+  int row_count() const;   ///< exit values a colour; 1 when diffuse
 };
 
-/// Throws Error (bad_input) when a transfer has another number of vertices or is not diffuse.
+/// Throws Error (bad_input) when a transfer has another number of vertices or exit rows that are no
+/// set of functions (sh::hemisphere_functions), or when two transfers differ in bands, rows or
+/// channels.
 Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransfer> transfer,
                  std::optional<signal::TransferSignal> signal);
 

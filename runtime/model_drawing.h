@@ -9,7 +9,9 @@
 
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "runtime/exit_stage.h"
 #include "runtime/model.h"
+#include "runtime/weight_inputs.h"
 #include "sh/light.h"
 
 namespace prt::runtime {
@@ -17,40 +19,45 @@ namespace prt::runtime {
 /// Compressed transfer, adaptive or not; both ways give the same pixels.
 class CompressedDrawing {
  public:
-  /// The model has compressed transfer. Throws Error (failed) when it has more components than this
-  /// OpenGL has vertex attributes (not needed by adaptive transfer) or uniforms for.
-  CompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
+  /// The model has compressed transfer; `exit`, made for it, must outlive this. Throws Error
+  /// (failed) when it has more components than this OpenGL has vertex attributes (not needed by
+  /// adaptive transfer) or uniforms for.
+  CompressedDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
+                    const gl::Buffer& indices);
 
   /// What ClusterConstants::evaluate returned for the light.
   void set_constants(const std::vector<Vec4>& constants);
 
   /// All clusters in one draw call; constants are fetched for each vertex.
-  void draw_single(const Matrix4& clip_from_world) const;
+  void draw_single(const Viewpoint& viewpoint) const;
   /// The loop of [Sloan03] §6.2: depth first, then supercluster by supercluster, constants in
   /// uniform registers, added up by blending. Where two triangles coincide exactly, both are added.
-  void draw_clusters(const Matrix4& clip_from_world) const;
+  void draw_clusters(const Viewpoint& viewpoint) const;
 
  private:
   gl::VertexArray make_array(const gl::Buffer& positions, const gl::Buffer& indices) const;
-  void bind_weights(const gl::Program& program) const;
+  void make_chunks(const Model& model, const gl::Buffer& positions);
+  void draw_chunks(int pass) const;
 
-  std::size_t index_count_;
-  int weight_vector_count_;  // attributes of weights; 0 when they are in the table
-  gl::Buffer constants_of_vertices_, weights_, weight_ranges_, chunk_indices_;
+  const ExitStage& exit_;
+  std::size_t index_count_, constant_count_;
+  gl::Buffer constants_of_vertices_, chunk_indices_;
+  WeightInputs weights_;
   gl::VertexArray single_array_, chunk_array_;
   std::vector<std::size_t> chunk_offsets_;
   std::vector<std::uint32_t> chunk_constants_;  // the first of each chunk, and how many there are
   gl::Program single_program_, cluster_program_, depth_program_;
-  gl::Table constant_table_, weight_table_;
+  gl::Table constant_table_;
   std::vector<Vec4> constants_;
 };
 
-/// Uncompressed transfer: the dot product of all coefficients for each vertex in its shader.
+/// Uncompressed diffuse transfer: the dot product of all coefficients for each vertex in its
+/// shader.
 class UncompressedDrawing {
  public:
   UncompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
   void set_light(const sh::Light& light);
-  void draw(const Matrix4& clip_from_world) const;
+  void draw(const Viewpoint& viewpoint) const;
 
  private:
   std::size_t index_count_;
@@ -61,12 +68,32 @@ class UncompressedDrawing {
   std::vector<Vec4> light_;
 };
 
+/// Uncompressed glossy transfer: the product of matrix and light for each vertex in its shader.
+class MatrixDrawing {
+ public:
+  /// The model has an uncompressed signal; `exit`, made for it, must outlive this. Throws Error
+  /// (failed) when it does not fit.
+  MatrixDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
+                const gl::Buffer& indices);
+  void set_light(const sh::Light& light);
+  void draw(const Viewpoint& viewpoint) const;
+
+ private:
+  const ExitStage& exit_;
+  std::size_t index_count_;
+  int band_count_, channel_count_;
+  gl::VertexArray array_;
+  gl::Table transfer_;
+  gl::Program program_;
+  std::vector<Vec4> light_;  // R, G, B of each coefficient
+};
+
 /// A colour for each vertex.
 class ColorDrawing {
  public:
   ColorDrawing(std::span<const Vec3> colors, std::size_t index_count, const gl::Buffer& positions,
                const gl::Buffer& indices);
-  void draw(const Matrix4& clip_from_world) const;
+  void draw(const Viewpoint& viewpoint) const;
 
  private:
   std::size_t index_count_;

@@ -104,7 +104,8 @@ void render(const RenderOptions& options, Report& report) {
   report.json()["opengl"] = gl::description();
   stage.emplace(report, "upload");
   Renderer renderer;
-  renderer.set_model(model);
+  renderer.set_model(model, options.passes);
+  report.json()["pass_count"] = renderer.pass_count();
   check_drawable(renderer, view);
   renderer.set_lighting(lighting);
   turn_light(renderer, picture.light_rotation, report);

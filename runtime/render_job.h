@@ -32,6 +32,7 @@ struct RenderOptions {
   PictureOptions picture;
   std::filesystem::path transfer;  ///< uncompressed; empty: none
   std::optional<Draw> draw;        ///< unset: uncompressed when it is given, else single
+  Passes passes = Passes::automatic;
   Show show = Show::radiance;
   int sample_count = 4;  ///< in a pixel; 1: at pixel centres
   bool debug = false;    ///< log OpenGL's messages
@@ -52,8 +53,8 @@ Lighting make_lighting(const PictureOptions& options, int transfer_band_count);
 /// What is behind the model: as asked for, else the light that was given, else a colour.
 Background make_background(const PictureOptions& options, Show show);
 
-/// Renders without a window. Adds to the report: stages, "light_change_seconds" (CPU), "opengl".
-/// Throws Error.
+/// Renders without a window. Adds to the report: stages, "light_change_seconds" (CPU), "opengl",
+/// "pass_count". Throws Error.
 void render(const RenderOptions& options, Report& report);
 
 }  // namespace prt::runtime

@@ -69,38 +69,55 @@ std::vector<Vec3> error_colors(const Model& model) {
 }  // namespace
 
 struct Renderer::Drawings {
-  explicit Drawings(const Model& model)
+  Drawings(const Model& model, Passes passes)
       : bounds(model.bounds),
         positions(std::span(model.positions)),
-        indices(std::span(model.indices)) {
+        indices(std::span(model.indices)),
+        exit(model, passes) {
     if (model.transfer) {
-      constants.emplace(*model.transfer);
-      compressed.emplace(model, positions, indices);
+      constants.emplace(*model.transfer, exit.layout());
+      compressed.emplace(model, exit, positions, indices);
       const std::size_t index_count = model.indices.size();
       clusters.emplace(label_colors(model.transfer->encoding.cluster_of_point), index_count,
                        positions, indices);
       superclusters.emplace(label_colors(supercluster_labels(*model.transfer)), index_count,
                             positions, indices);
     }
-    if (model.signal) uncompressed.emplace(model, positions, indices);
+    if (model.signal && exit.layout().is_glossy())
+      matrices.emplace(model, exit, positions, indices);
+    else if (model.signal)
+      uncompressed.emplace(model, positions, indices);
     if (model.transfer && model.signal)
       error.emplace(error_colors(model), model.indices.size(), positions, indices);
   }
 
-  void draw(const View& view, const Matrix4& clip_from_world) const {
-    if (view.show == Show::clusters) return clusters->draw(clip_from_world);
-    if (view.show == Show::superclusters) return superclusters->draw(clip_from_world);
-    if (view.show == Show::error) return error->draw(clip_from_world);
-    if (view.draw == Draw::uncompressed) return uncompressed->draw(clip_from_world);
-    if (view.draw == Draw::clusters) return compressed->draw_clusters(clip_from_world);
-    compressed->draw_single(clip_from_world);
+  void draw(const View& view) const {
+    const camera::DepthRange range = camera::depth_range(view.camera, bounds);
+    const camera::Camera::Axes axes = view.camera.axes();
+    const Viewpoint viewpoint{view.camera.clip_from_world(range.z_near, range.z_far),
+                              view.camera.eye, axes.right, axes.backward};
+    if (view.show == Show::clusters) return clusters->draw(viewpoint);
+    if (view.show == Show::superclusters) return superclusters->draw(viewpoint);
+    if (view.show == Show::error) return error->draw(viewpoint);
+    if (view.draw == Draw::clusters) return compressed->draw_clusters(viewpoint);
+    if (view.draw == Draw::single) return compressed->draw_single(viewpoint);
+    if (matrices) return matrices->draw(viewpoint);
+    uncompressed->draw(viewpoint);
+  }
+
+  void set_light(const sh::Light& light) {
+    if (compressed) compressed->set_constants(constants->evaluate(light));
+    if (uncompressed) uncompressed->set_light(light);
+    if (matrices) matrices->set_light(light);
   }
 
   camera::Sphere bounds;
   gl::Buffer positions, indices;
+  ExitStage exit;
   std::optional<ClusterConstants> constants;
   std::optional<CompressedDrawing> compressed;
   std::optional<UncompressedDrawing> uncompressed;
+  std::optional<MatrixDrawing> matrices;
   std::optional<ColorDrawing> clusters, superclusters, error;
 };
 
@@ -115,8 +132,8 @@ Renderer::Renderer(gl::Format float_format)
 
 Renderer::~Renderer() = default;
 
-void Renderer::set_model(const Model& model) {
-  drawings_ = std::make_unique<Drawings>(model);
+void Renderer::set_model(const Model& model, Passes passes) {
+  drawings_ = std::make_unique<Drawings>(model, passes);
   update_light();
 }
 
@@ -132,19 +149,17 @@ void Renderer::set_light_rotation(const Matrix4& world_from_light) {
 }
 
 void Renderer::update_light() {
-  if (!drawings_) return;
-  const sh::Light light = sh::rotated(light_, world_from_light_);
-  if (drawings_->compressed)
-    drawings_->compressed->set_constants(drawings_->constants->evaluate(light));
-  if (drawings_->uncompressed) drawings_->uncompressed->set_light(light);
+  if (drawings_) drawings_->set_light(sh::rotated(light_, world_from_light_));
 }
+
+int Renderer::pass_count() const { return drawings_ ? drawings_->exit.layout().pass_count : 0; }
 
 bool Renderer::can_draw(Draw draw, Show show) const {
   if (!drawings_) return false;
   if (show == Show::clusters || show == Show::superclusters) return drawings_->clusters.has_value();
   if (show == Show::error) return drawings_->error.has_value();
-  return draw == Draw::uncompressed ? drawings_->uncompressed.has_value()
-                                    : drawings_->compressed.has_value();
+  if (draw == Draw::uncompressed) return drawings_->uncompressed || drawings_->matrices;
+  return drawings_->compressed.has_value();
 }
 
 void Renderer::draw(const View& view, int width, int height, int samples) {
@@ -157,9 +172,8 @@ void Renderer::draw(const View& view, int width, int height, int samples) {
   glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (can_draw(view.draw, view.show)) {
-    const camera::DepthRange range = camera::depth_range(view.camera, drawings_->bounds);
     glEnable(GL_DEPTH_TEST);
-    drawings_->draw(view, view.camera.clip_from_world(range.z_near, range.z_far));
+    drawings_->draw(view);
     glDisable(GL_DEPTH_TEST);
   }
   frame_.resolve();

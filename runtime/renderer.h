@@ -9,6 +9,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "image/image.h"
+#include "runtime/exit_stage.h"
 #include "runtime/lighting.h"
 #include "runtime/model.h"
 
@@ -41,14 +42,17 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Takes the place of the model before; that one stays when this throws.
-  void set_model(const Model& model);
+  /// Takes the place of the model before; that one stays when this throws. `passes`: of glossy
+  /// transfer.
+  void set_model(const Model& model, Passes passes = Passes::automatic);
   /// Light and background.
   void set_lighting(const Lighting& lighting);
   /// Turns light and background; the light of set_lighting is what is turned.
   void set_light_rotation(const Matrix4& world_from_light);
 
   bool can_draw(Draw draw, Show show) const;
+  /// That the model is drawn in; 0 without one.
+  int pass_count() const;
 
   /// Draws one frame into a float texture: linear radiance, premultiplied by coverage, no
   /// background. `samples` in a pixel, cut to what the driver has; 1: at pixel centres.

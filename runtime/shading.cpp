@@ -5,42 +5,63 @@
 #include <numeric>
 #include <span>
 
+#include "sh/basis.h"
+#include "sh/hemisphere.h"
+
 namespace prt::runtime {
 
 namespace {
 
-/// t·l for each colour; t is [channel][coefficient].
-Vec3 dot_light(std::span<const float> t, int channel_count, const sh::Light& light) {
-  Vec3 sum(0.0f);
-  for (int color = 0; color < 3; ++color) {
-    const std::vector<float>& l = light.coefficients[static_cast<std::size_t>(color)];
-    const std::size_t first = channel_count == 3 ? static_cast<std::size_t>(color) * l.size() : 0;
-    sum[color] = std::inner_product(l.begin(), l.end(), t.begin() + first, 0.0f);
+/// Adds factor x·l of each exit row and colour; x is [channel][row][coefficient].
+void add_product(std::span<const float> x, int channel_count, const sh::Light& light, float factor,
+                 std::span<Vec3> values) {
+  for (std::size_t color = 0; color < 3; ++color) {
+    const std::vector<float>& l = light.coefficients[color];
+    const std::size_t first = channel_count == 3 ? color * values.size() * l.size() : 0;
+    for (std::size_t row = 0; row < values.size(); ++row)
+      values[row][static_cast<int>(color)] +=
+          factor *
+          std::inner_product(l.begin(), l.end(),
+                             x.begin() + static_cast<std::ptrdiff_t>(first + row * l.size()), 0.0f);
   }
-  return sum;
 }
 
 }  // namespace
 
-Vec3 vertex_radiance(const gltf::PrecomputedTransfer& transfer, std::size_t vertex,
-                     const sh::Light& light) {
+std::vector<Vec3> exit_values(const gltf::PrecomputedTransfer& transfer, std::size_t vertex,
+                              const sh::Light& light) {
   assert(light.band_count == transfer.band_count);
   const cpca::Encoding& encoding = transfer.encoding;
   const auto cluster = static_cast<int>(encoding.cluster_of_point[vertex]);
   const auto component_count = static_cast<std::size_t>(encoding.component_count);
   const float* const weights = encoding.weights.data() + vertex * component_count;
-  Vec3 radiance = dot_light(encoding.mean(cluster), transfer.channel_count, light);
+  std::vector<Vec3> values(static_cast<std::size_t>(transfer.row_count), Vec3(0.0f));
+  add_product(encoding.mean(cluster), transfer.channel_count, light, 1.0f, values);
   for (int i = 0; i < encoding.component_count_of(cluster); ++i)
-    radiance += weights[i] * dot_light(encoding.basis(cluster, i), transfer.channel_count, light);
-  return radiance;
+    add_product(encoding.basis(cluster, i), transfer.channel_count, light, weights[i], values);
+  return values;
 }
 
-Vec3 vertex_radiance(const signal::TransferSignal& signal, std::size_t vertex,
-                     const sh::Light& light) {
+std::vector<Vec3> exit_values(const signal::TransferSignal& signal, std::size_t vertex,
+                              const sh::Light& light) {
   assert(light.band_count == signal.band_count);
   const auto dimension = static_cast<std::size_t>(signal.dimension());
-  return dot_light(std::span(signal.values).subspan(vertex * dimension, dimension),
-                   signal.channel_count, light);
+  std::vector<Vec3> values(static_cast<std::size_t>(signal.row_count), Vec3(0.0f));
+  add_product(std::span(signal.values).subspan(vertex * dimension, dimension), signal.channel_count,
+              light, 1.0f, values);
+  return values;
+}
+
+Vec3 exit_radiance(std::span<const Vec3> exit_values, const Vec3& view) {
+  if (exit_values.size() == 1) return exit_values[0];
+  const std::vector<int> functions = sh::hemisphere_functions(static_cast<int>(exit_values.size()));
+  const int band_count = sh::band_count_of(functions);
+  std::vector<float> basis(static_cast<std::size_t>(sh::coefficient_count(band_count)));
+  sh::evaluate(band_count, view.z > 0.0f ? view : Vec3(view.x, view.y, 0.0f).normalized(), basis);
+  Vec3 radiance(0.0f);
+  for (std::size_t row = 0; row < functions.size(); ++row)
+    radiance += exit_values[row] * basis[static_cast<std::size_t>(functions[row])];
+  return radiance;
 }
 
 Vec3 tone_map(const Vec3& radiance) {

@@ -35,8 +35,7 @@ UncompressedDrawing::UncompressedDrawing(const Model& model, const gl::Buffer& p
       band_count_(model.signal->band_count),
       array_(array_with_positions(positions, indices)) {
   const std::size_t vectors = vector_count(band_count_);
-  const auto most = static_cast<std::size_t>(gl::limits().max_vertex_uniform_vectors - 8);
-  if (3 * vectors > most)
+  if (3 * vectors > static_cast<std::size_t>(free_uniform_vectors(gl::limits())))
     throw_failed("this OpenGL has too few uniforms to draw uncompressed transfer",
                  {.found = fmt::format("{} bands", band_count_)});
   const std::vector<Vec4> padded = padded_transfer(*model.signal);
@@ -56,9 +55,9 @@ void UncompressedDrawing::set_light(const sh::Light& light) {
       light_[color * vectors + k / 4][static_cast<int>(k % 4)] = fitted.coefficients[color][k];
 }
 
-void UncompressedDrawing::draw(const Matrix4& clip_from_world) const {
+void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
   program_.use();
-  program_.set("u_clip_from_world", clip_from_world);
+  program_.set("u_clip_from_world", viewpoint.clip_from_world);
   program_.set("u_transfer", 0);
   program_.set("u_light", light_);
   transfer_.bind(0);
@@ -75,9 +74,9 @@ ColorDrawing::ColorDrawing(std::span<const Vec3> colors, std::size_t index_count
   array_.set_floats(1, colors_, 3, sizeof(Vec3), 0);
 }
 
-void ColorDrawing::draw(const Matrix4& clip_from_world) const {
+void ColorDrawing::draw(const Viewpoint& viewpoint) const {
   program_.use();
-  program_.set("u_clip_from_world", clip_from_world);
+  program_.set("u_clip_from_world", viewpoint.clip_from_world);
   array_.bind();
   draw_triangles(0, index_count_);
 }

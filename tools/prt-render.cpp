@@ -17,11 +17,14 @@ namespace {
 
 using prt::runtime::Background;
 using prt::runtime::Draw;
+using prt::runtime::Passes;
 using prt::runtime::PictureOptions;
 using prt::runtime::Show;
 
 const std::map<std::string, Draw> kDraws = {
     {"single", Draw::single}, {"clusters", Draw::clusters}, {"uncompressed", Draw::uncompressed}};
+const std::map<std::string, Passes> kPasses = {
+    {"auto", Passes::automatic}, {"one", Passes::one}, {"per-channel", Passes::per_channel}};
 const std::map<std::string, Show> kShows = {{"radiance", Show::radiance},
                                             {"clusters", Show::clusters},
                                             {"superclusters", Show::superclusters},
@@ -82,6 +85,8 @@ void add_render_options(CLI::App& app, prt::runtime::RenderOptions& options) {
   add_choice(app, "--draw", options.draw, kDraws,
              "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
              "with --transfer]");
+  add_choice(app, "--passes", options.passes, kPasses,
+             "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
   add_choice(app, "--show", options.show, kShows, "What to show [radiance]");
   app.add_option("--antialias", options.sample_count,
                  "Samples in a pixel, at most what the driver has; 1: pixel centres")
@@ -111,7 +116,8 @@ void add_reference_options(CLI::App& app, prt::runtime::ReferenceOptions& option
   app.add_option("--noise-output", options.noise,
                  "Write the standard error of each pixel too (.exr), for prt-inspect --noise")
       ->needs(flag);
-  for (const char* name : {"--transfer", "--draw", "--show"}) flag->excludes(app.get_option(name));
+  for (const char* name : {"--transfer", "--draw", "--passes", "--show"})
+    flag->excludes(app.get_option(name));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/log.h"
 #include "gl/debug.h"
@@ -65,6 +67,13 @@ Limits limits() {
   limits.max_vertex_uniform_vectors = epoxy_is_desktop_gl()
                                           ? integer(GL_MAX_VERTEX_UNIFORM_COMPONENTS) / 4
                                           : integer(GL_MAX_VERTEX_UNIFORM_VECTORS);
+  // gl_Position is among the outputs.
+  const int varying_components =
+      std::min({integer(GL_MAX_VARYING_COMPONENTS), integer(GL_MAX_VERTEX_OUTPUT_COMPONENTS) - 4,
+                integer(GL_MAX_FRAGMENT_INPUT_COMPONENTS)});
+  limits.max_varying_vectors = varying_components / 4;
+  limits.float32_filters =
+      epoxy_is_desktop_gl() || epoxy_has_gl_extension("GL_OES_texture_float_linear");
   limits.max_samples = max_samples_of(limits.float32_targets ? GL_RGBA32F : GL_RGBA16F);
   return limits;
 }

@@ -54,7 +54,9 @@ struct Limits {
   int max_texture_size;
   int max_vertex_attributes;       ///< vec4 each
   int max_vertex_uniform_vectors;  ///< vec4 each
+  int max_varying_vectors;         ///< vec4 each, from vertices to pixels
   bool float32_targets;            ///< RGBA32F can be drawn to and blended
+  bool float32_filters;            ///< RGBA32F can be filtered
   int max_samples;                 ///< of the colour format that targets use
 };
 Limits limits();

@@ -110,4 +110,23 @@ void Table::upload(std::span<const Vec4> values) {
   check_errors("uploading a table");
 }
 
+TextureArray::TextureArray(int size, std::span<const Vec4> texels)
+    : name_(generate([](GLsizei n, GLuint* names) { glGenTextures(n, names); })) {
+  const auto layer_size = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  glBindTexture(GL_TEXTURE_2D_ARRAY, name_.get());
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, limits().float32_filters ? GL_RGBA32F : GL_RGBA16F, size,
+               size, static_cast<GLsizei>(texels.size() / layer_size), 0, GL_RGBA, GL_FLOAT,
+               texels.data());
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, wrap, GL_CLAMP_TO_EDGE);
+  check_errors("storing an array of textures");
+}
+
+void TextureArray::bind(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D_ARRAY, name_.get());
+}
+
 }  // namespace prt::gl

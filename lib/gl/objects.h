@@ -97,6 +97,19 @@ class Table : public Texture {
   std::size_t count_ = 0;
 };
 
+/// Layers of square images, filtered bilinearly within a layer, edges clamped: RGBA32F, or RGBA16F
+/// where that cannot be filtered.
+class TextureArray {
+ public:
+  TextureArray() = default;
+  /// `texels`: layer after layer of size × size, first row at texel row 0.
+  TextureArray(int size, std::span<const Vec4> texels);
+  void bind(int unit) const;
+
+ private:
+  Name<delete_texture> name_;
+};
+
 /// A colour texture, and when asked depth and multisampling (resolve() then brings the samples'
 /// mean into the texture).
 class Target {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "ray/engine.h"
 #include "runtime/renderer.h"
@@ -14,7 +15,8 @@ namespace prt::runtime {
 
 constexpr int kWidth = 96, kHeight = 64;
 
-/// The pixel that the CPU computes: the camera's ray, its hit, the vertices' radiance interpolated.
+/// The pixel that the CPU computes: the camera's ray, its hit, the vertices' exit radiance
+/// interpolated.
 class CpuPixels {
  public:
   CpuPixels(const Model& model, const View& view, const sh::Light& light)
@@ -31,9 +33,7 @@ class CpuPixels {
       const ray::Hit beside = closest(x + dx, y + dy);
       if (beside.triangle == ray::kNoHit || std::abs(beside.t - hit.t) > 0.2f) return false;
     }
-    const std::uint32_t* const corner = &model_.indices[3 * hit.triangle];
-    radiance = vertex(corner[0]) * (1 - hit.u - hit.v) + vertex(corner[1]) * hit.u +
-               vertex(corner[2]) * hit.v;
+    radiance = interpolated(&model_.indices[3 * hit.triangle], {1 - hit.u - hit.v, hit.u, hit.v});
     return true;
   }
 
@@ -47,9 +47,40 @@ class CpuPixels {
     engine_->closest_hit({&ray, 1}, {&hit, 1});
     return hit;
   }
-  Vec3 vertex(std::uint32_t index) const {
-    return view_.draw == Draw::uncompressed ? vertex_radiance(*model_.signal, index, light_)
-                                            : vertex_radiance(*model_.transfer, index, light_);
+  std::vector<Vec3> values(std::uint32_t index) const {
+    return view_.draw == Draw::uncompressed ? exit_values(*model_.signal, index, light_)
+                                            : exit_values(*model_.transfer, index, light_);
+  }
+  /// The frame that views and coefficients are interpolated in; twin of send_exit.glsl.
+  Matrix4 world_from_smooth(std::uint32_t index) const {
+    const camera::Camera::Axes axes = view_.camera.axes();
+    const Vec3 z = model_.normals[index];
+    const Vec3 x =
+        axes.right - (axes.backward + z) * (axes.right.dot(z) / (1.0f + axes.backward.dot(z)));
+    const Vec3 y = z.cross(x);
+    return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, 0, 0, 0, 1};
+  }
+  /// What the vertex sends where `view`, in the smooth frame, is the direction to the eye.
+  Vec3 radiance_of(std::uint32_t index, const Vec3& view) const {
+    const Vec3 world = transform_vector(world_from_smooth(index), view);
+    const Vec4& tangent = model_.tangents[index];
+    const Vec3 x(tangent.x, tangent.y, tangent.z), z = model_.normals[index];
+    return exit_radiance(values(index),
+                         {x.dot(world), z.cross(x).dot(world) * tangent.w, z.dot(world)});
+  }
+  Vec3 interpolated(const std::uint32_t* corner, const Vec3& shares) const {
+    Vec3 sum(0), view(0);
+    if (model_.row_count() == 1) {
+      for (int i = 0; i < 3; ++i) sum += values(corner[i])[0] * shares[i];
+      return sum;
+    }
+    for (int i = 0; i < 3; ++i)
+      view += transform_vector(world_from_smooth(corner[i]).transposed(),
+                               view_.camera.eye - model_.positions[corner[i]]) *
+              shares[i];
+    view.normalize();
+    for (int i = 0; i < 3; ++i) sum += radiance_of(corner[i], view) * shares[i];
+    return sum;
   }
 
   const Model& model_;

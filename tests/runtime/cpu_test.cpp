@@ -21,7 +21,7 @@ TEST(ClusterConstants, AreTheDotProductsWithTheLight) {
   for (const int channel_count : {1, 3}) {
     const gltf::PrecomputedTransfer transfer = random_transfer(10, 5, channel_count, 300, 8);
     const sh::Light light = test_light(5);
-    ClusterConstants constants(transfer);
+    ClusterConstants constants(transfer, exit_layout(1, 1));
     const std::vector<Vec4>& found = constants.evaluate(light);
     ASSERT_EQ(found.size(), 300u * 9u);
     for (int cluster = 0; cluster < 300; ++cluster)
@@ -41,11 +41,13 @@ TEST(ClusterConstants, AreTheDotProductsWithTheLight) {
 
 TEST(ClusterConstants, OfAdaptiveTransferAreThoseThatClustersHave) {
   gltf::PrecomputedTransfer transfer = random_adaptive_transfer(10, 3, 3, 20, 4);
-  const std::vector<Vec4> packed = ClusterConstants(transfer).evaluate(test_light(3));
+  const std::vector<Vec4> packed =
+      ClusterConstants(transfer, exit_layout(1, 1)).evaluate(test_light(3));
   const std::vector<std::uint32_t> first = first_constants(transfer.encoding);
   const std::vector<std::uint32_t> counts = std::move(transfer.encoding.component_counts);
   transfer.encoding.component_counts = {};
-  const std::vector<Vec4> padded = ClusterConstants(transfer).evaluate(test_light(3));
+  const std::vector<Vec4> padded =
+      ClusterConstants(transfer, exit_layout(1, 1)).evaluate(test_light(3));
   ASSERT_EQ(packed.size(), first.back());
   for (std::size_t k = 0; k < 20; ++k) {
     ASSERT_EQ(first[k + 1] - first[k], counts[k] + 1);
@@ -65,7 +67,7 @@ TEST(ClusterChunks, AreSuperclustersSplitToFitTheRegisters) {
 }
 
 TEST(ClusterConstants, LightOfMoreOrFewerBandsIsCutOrPadded) {
-  ClusterConstants constants(random_transfer(10, 3, 3, 4, 2));
+  ClusterConstants constants(random_transfer(10, 3, 3, 4, 2), exit_layout(1, 1));
   const sh::Light light = test_light(3);
   const std::vector<Vec4> expected = constants.evaluate(light);
   EXPECT_EQ(constants.evaluate(sh::with_band_count(light, 6)), expected);
@@ -122,7 +124,7 @@ TEST(Shading, ConvexBodyOfAlbedoOneUnderConstantLightHasThatRadiance) {
   const Vec3 radiance(0.25f, 1, 4);
   const sh::Light light = sh::constant_light(3, radiance);
   for (std::size_t p = 0; p < scene.vertex_count(); ++p)
-    EXPECT_LT((vertex_radiance(signal, p, light) - radiance).length(), 1e-4f);
+    EXPECT_LT((exit_values(signal, p, light)[0] - radiance).length(), 1e-4f);
 }
 
 TEST(ToneMap, KeepsBaseColorsAndOrderAndClampsOnlyNegatives) {
@@ -139,12 +141,18 @@ TEST(ToneMap, KeepsBaseColorsAndOrderAndClampsOnlyNegatives) {
   EXPECT_GT(last, 0.99f);
 }
 
-TEST(Model, RefusesTransferOfAnotherMeshOrGlossy) {
+TEST(Model, RefusesTransferOfAnotherMeshOrOfRowsThatAreNoFunctions) {
   const mesh::Scene scene = scene_of({sphere(6, 8)});
   EXPECT_THROW(make_model(scene, random_transfer(5, 2, 1, 2, 1), {}), Error);
-  gltf::PrecomputedTransfer glossy = random_transfer(scene.vertex_count(), 2, 1, 2, 1);
-  glossy.row_count = 4;
-  EXPECT_THROW(make_model(scene, glossy, {}), Error);
+  const auto of_rows = [&](int row_count) {
+    return random_transfer(scene.vertex_count(), 2, 1, 2, 1, row_count);
+  };
+  for (const int row_count : {1, 3, 4, 8})
+    EXPECT_NO_THROW(make_model(scene, of_rows(row_count), {}));
+  for (const int row_count : {2, 5, 14})
+    EXPECT_THROW(make_model(scene, of_rows(row_count), {}), Error);
+  signal::TransferSignal signal = unshadowed(scene, 4, {{1, 0, 0}});  // 16 numbers too
+  EXPECT_THROW(make_model(scene, of_rows(4), signal), Error);
 }
 
 TEST(Model, RelativeErrorIsThatOfAKnownChange) {

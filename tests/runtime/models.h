@@ -96,6 +96,7 @@ inline gltf::PrecomputedTransfer full_rank(const signal::TransferSignal& signal,
   gltf::PrecomputedTransfer transfer;
   transfer.band_count = signal.band_count;
   transfer.channel_count = signal.channel_count;
+  transfer.row_count = signal.row_count;
   cpca::Encoding& e = transfer.encoding;
   const auto n = static_cast<std::size_t>(signal.dimension());
   e.point_count = signal.vertex_count();
@@ -119,13 +120,14 @@ inline gltf::PrecomputedTransfer full_rank(const signal::TransferSignal& signal,
 /// Random means, bases and weights: any numbers must draw alike both ways.
 inline gltf::PrecomputedTransfer random_transfer(std::size_t vertex_count, int band_count,
                                                  int channel_count, int cluster_count,
-                                                 int component_count) {
+                                                 int component_count, int row_count = 1) {
   gltf::PrecomputedTransfer transfer;
   transfer.band_count = band_count;
   transfer.channel_count = channel_count;
+  transfer.row_count = row_count;
   cpca::Encoding& e = transfer.encoding;
   e.point_count = vertex_count;
-  e.dimension = channel_count * band_count * band_count;
+  e.dimension = channel_count * row_count * band_count * band_count;
   e.cluster_count = cluster_count;
   e.component_count = component_count;
   Pcg32 random(11);
@@ -143,9 +145,9 @@ inline gltf::PrecomputedTransfer random_transfer(std::size_t vertex_count, int b
 /// The same as adaptive CPCA has it: clusters of 0 to `component_count` vectors.
 inline gltf::PrecomputedTransfer random_adaptive_transfer(std::size_t vertex_count, int band_count,
                                                           int channel_count, int cluster_count,
-                                                          int component_count) {
-  gltf::PrecomputedTransfer transfer =
-      random_transfer(vertex_count, band_count, channel_count, cluster_count, component_count);
+                                                          int component_count, int row_count = 1) {
+  gltf::PrecomputedTransfer transfer = random_transfer(vertex_count, band_count, channel_count,
+                                                       cluster_count, component_count, row_count);
   cpca::Encoding& e = transfer.encoding;
   const auto components = static_cast<std::size_t>(component_count);
   const auto n = static_cast<std::size_t>(e.dimension);

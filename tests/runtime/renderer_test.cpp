@@ -10,32 +10,12 @@
 #include "image/environment.h"
 #include "image/false_color.h"
 #include "runtime/cluster_constants.h"
-#include "runtime/cpu_pixels.h"
 #include "runtime/models.h"
+#include "runtime/pictures.h"
 #include "runtime/shading.h"
 
 namespace prt::runtime {
 namespace {
-
-/// Largest difference over all channels of all pixels; both images must show something.
-float largest_difference(const image::Image& a, const image::Image& b) {
-  EXPECT_EQ(a.pixels.size(), b.pixels.size());
-  float largest = 0.0f;
-  std::size_t covered_count = 0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    largest = std::max(largest, std::abs(a.pixels[i] - b.pixels[i]));
-    covered_count += i % 4 == 3 && a.pixels[i] > 0.0f;
-  }
-  EXPECT_GT(covered_count, 500u) << "nothing was drawn";
-  return largest;
-}
-
-View view_of(const Model& model) {
-  View view;
-  view.camera = camera::frame(model.bounds, 40, static_cast<float>(kWidth) / kHeight);
-  view.background = Background::none;
-  return view;
-}
 
 class EveryApi : public testing::TestWithParam<gl::Api> {
  protected:
@@ -149,22 +129,8 @@ TEST_P(EveryApi, PixelsAgreeWithTheCpuTwin) {
   for (float& value : transfer.encoding.bases) value *= 0.1f;
   const Model model = make_model(scene, transfer, signal);
   const sh::Light light = test_light(5);
-  for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed}) {
-    View view = view_of(model);
-    view.draw = draw;
-    const image::Image image = render(model, draw, lighting_from(light));
-    const CpuPixels cpu(model, view, light);
-    std::size_t compared_count = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        Vec3 expected;
-        if (!cpu.radiance(x, y, expected)) continue;
-        ++compared_count;
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y)[c], expected[c], 1.0f / 255.0f);
-        EXPECT_EQ(image.at(x, y)[3], 1.0f);
-      }
-    EXPECT_GT(compared_count, 500u);
-  }
+  for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed})
+    expect_cpu_pixels(model, draw, light, render(model, draw, lighting_from(light)));
 }
 
 TEST_P(EveryApi, BackgroundAgreesWithTheEnvironmentOnTheCpu) {
