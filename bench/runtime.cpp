@@ -1,11 +1,14 @@
 // Speed of the runtime: frames by every way of drawing, on one context and one model, and the CPU's
 // work for a change of light. The model has the size of the Stanford bunny's bake: 34,848 vertices,
-// 256 clusters of 8 vectors, colour transfer of 5 bands. Frames are 512x512 without antialiasing
-// and without background, so that vertices weigh as they do on hardware that rasterises fast.
-// bench_runtime a.prt.glb draws that model instead.
+// 256 clusters of 8 vectors, colour transfer of 5 bands, diffuse or of 24 exit rows. Frames are
+// 512x512 without antialiasing and without background, so that vertices weigh as they do on
+// hardware that rasterises fast; those of "vertices" are 4x4, which leaves little else but vertices
+// to do. bench_runtime a.prt.glb [a.transfer.exr] draws that model instead,
+// whatever the benchmark's name says.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "cpca/superclusters.h"
 #include "gl/context.h"
@@ -21,14 +24,15 @@ using namespace prt::runtime;
 
 constexpr int kBandCount = 5, kClusterCount = 256, kComponentCount = 8, kSize = 512;
 
-std::filesystem::path given_model;  // of the command line
+std::filesystem::path given_model, given_transfer;  // of the command line
 
-/// Clusters of neighbouring vertices, as a bake makes them, rather than scattered ones.
-Model make_bench_model() {
-  if (!given_model.empty()) return load_model(given_model);
+/// Clusters of neighbouring vertices, as a bake makes them, rather than scattered ones. The
+/// uncompressed signal is some signal of the same shape.
+Model make_bench_model(int row_count, int channel_count) {
+  if (!given_model.empty()) return load_model(given_model, given_transfer);
   const mesh::Scene scene = scene_of({torus(264, 132)});
-  gltf::PrecomputedTransfer transfer =
-      random_transfer(scene.vertex_count(), kBandCount, 3, kClusterCount, kComponentCount);
+  gltf::PrecomputedTransfer transfer = random_transfer(
+      scene.vertex_count(), kBandCount, channel_count, kClusterCount, kComponentCount, row_count);
   for (std::size_t p = 0; p < scene.vertex_count(); ++p) {
     const std::size_t ring = p / 132, side = p % 132;
     transfer.encoding.cluster_of_point[p] =
@@ -36,67 +40,96 @@ Model make_bench_model() {
   }
   transfer.first_clusters = cpca::sort_clusters(
       cpca::find_superclusters(scene.indices(), transfer.encoding.cluster_of_point,
-                               cpca::register_counts(transfer.encoding, 1), 256),
+                               cpca::register_counts(transfer.encoding, row_count), 256),
       transfer.encoding);
-  return make_model(scene, transfer,
-                    unshadowed(scene, kBandCount, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  signal::TransferSignal signal;
+  signal.band_count = kBandCount;
+  signal.row_count = row_count;
+  signal.channel_count = channel_count;
+  signal.blocks = {{"torus", scene.vertex_count()}};
+  signal.values.assign(scene.vertex_count() * static_cast<std::size_t>(signal.dimension()), 0.01f);
+  return make_model(scene, transfer, std::move(signal));
 }
 
-void draw_frames(benchmark::State& state, Draw draw, bool superclusters) {
+enum Light { still, turning };
+
+void draw_frames(benchmark::State& state, int row_count, int channel_count, Draw draw, Light light,
+                 bool superclusters = true, Passes passes = Passes::automatic, int size = kSize) {
   const gl::HeadlessContext context;
-  Model model = make_bench_model();
+  Model model = make_bench_model(row_count, channel_count);
   if (draw == Draw::uncompressed && !model.signal) return state.SkipWithError("no transfer");
   if (!superclusters) model.transfer->first_clusters.clear();
   Renderer renderer;
-  renderer.set_model(model);
+  renderer.set_model(model, passes);
   renderer.set_lighting(lighting_from(test_light(kBandCount)));
   View view;
   view.camera = camera::frame(model.bounds, 40, 1);
   view.draw = draw;
-  renderer.draw(view, kSize, kSize, 1);
+  renderer.draw(view, size, size, 1);
   gl::finish();
+  float degrees = 0;
   for (auto _ : state) {
-    renderer.draw(view, kSize, kSize, 1);
+    if (light == turning) renderer.set_light_rotation(light_rotation(degrees += 1));
+    renderer.draw(view, size, size, 1);
     gl::finish();
   }
   state.SetItemsProcessed(state.iterations());
   state.SetLabel(gl::description());
 }
-BENCHMARK_CAPTURE(draw_frames, compressed_single, Draw::single, false)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(draw_frames, compressed_clusters, Draw::clusters, false)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(draw_frames, compressed_superclusters, Draw::clusters, true)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(draw_frames, uncompressed, Draw::uncompressed, false)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
 
-/// Rotating the light and the constants t_i·l of all clusters, on one CPU thread.
+#define DRAW_FRAMES(name, ...)                      \
+  BENCHMARK_CAPTURE(draw_frames, name, __VA_ARGS__) \
+      ->MeasureProcessCPUTime()                     \
+      ->UseRealTime()                               \
+      ->Unit(benchmark::kMillisecond)
+DRAW_FRAMES(diffuse_single, 1, 3, Draw::single, still);
+DRAW_FRAMES(diffuse_clusters, 1, 3, Draw::clusters, still, false);
+DRAW_FRAMES(diffuse_superclusters, 1, 3, Draw::clusters, still);
+DRAW_FRAMES(diffuse_uncompressed, 1, 3, Draw::uncompressed, still);
+DRAW_FRAMES(diffuse_single_vertices, 1, 3, Draw::single, still, true, Passes::automatic, 4);
+DRAW_FRAMES(diffuse_uncompressed_vertices, 1, 3, Draw::uncompressed, still, true, Passes::automatic,
+            4);
+DRAW_FRAMES(diffuse_single_turning, 1, 3, Draw::single, turning);
+DRAW_FRAMES(diffuse_uncompressed_turning, 1, 3, Draw::uncompressed, turning);
+DRAW_FRAMES(glossy_single, 24, 3, Draw::single, still);
+DRAW_FRAMES(glossy_single_per_channel, 24, 3, Draw::single, still, true, Passes::per_channel);
+DRAW_FRAMES(glossy_clusters, 24, 3, Draw::clusters, still, false);
+DRAW_FRAMES(glossy_superclusters, 24, 3, Draw::clusters, still);
+DRAW_FRAMES(glossy_uncompressed, 24, 3, Draw::uncompressed, still);
+DRAW_FRAMES(glossy_single_vertices, 24, 3, Draw::single, still, true, Passes::automatic, 4);
+DRAW_FRAMES(glossy_uncompressed_vertices, 24, 3, Draw::uncompressed, still, true, Passes::automatic,
+            4);
+DRAW_FRAMES(glossy_single_turning, 24, 3, Draw::single, turning);
+DRAW_FRAMES(glossy_uncompressed_turning, 24, 3, Draw::uncompressed, turning);
+
+/// Rotating the light and the constants M_i l of all clusters, on all processors.
 void change_light(benchmark::State& state) {
   const auto band_count = static_cast<int>(state.range(0));
-  ClusterConstants constants(random_transfer(1, band_count, 3, kClusterCount, kComponentCount),
-                             exit_layout(1, 1));
+  const auto row_count = static_cast<int>(state.range(1));
+  const auto channel_count = static_cast<int>(state.range(2));
+  ClusterConstants constants(
+      random_transfer(1, band_count, channel_count, kClusterCount, kComponentCount, row_count),
+      exit_layout(row_count, 1));
   const sh::Light light = test_light(band_count);
   float degrees = 0;
   for (auto _ : state)
     benchmark::DoNotOptimize(
         constants.evaluate(sh::rotated(light, light_rotation(degrees += 1))).data());
 }
-BENCHMARK(change_light)->Arg(5)->Arg(10)->ArgName("bands")->Unit(benchmark::kMicrosecond);
+BENCHMARK(change_light)
+    ->Args({5, 1, 3})
+    ->Args({10, 1, 3})
+    ->Args({5, 24, 1})
+    ->Args({5, 24, 3})
+    ->ArgNames({"bands", "rows", "channels"})
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
 
 /// The same with the upload to OpenGL and the uncompressed transfer's uniforms.
 void change_light_in_renderer(benchmark::State& state) {
   const gl::HeadlessContext context;
   Renderer renderer;
-  renderer.set_model(make_bench_model());
+  renderer.set_model(make_bench_model(static_cast<int>(state.range(0)), 3));
   renderer.set_lighting(lighting_from(test_light(kBandCount)));
   float degrees = 0;
   for (auto _ : state) {
@@ -104,12 +137,18 @@ void change_light_in_renderer(benchmark::State& state) {
     gl::finish();
   }
 }
-BENCHMARK(change_light_in_renderer)->Unit(benchmark::kMicrosecond);
+BENCHMARK(change_light_in_renderer)
+    ->Arg(1)
+    ->Arg(24)
+    ->ArgName("rows")
+    ->UseRealTime()
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (argc > 1) given_model = argv[1];
+  if (argc > 2) given_transfer = argv[2];
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -7,7 +7,6 @@
 #include "cpca/superclusters.h"
 #include "gl/context.h"
 #include "runtime/cluster_chunks.h"
-#include "runtime/cluster_constants.h"
 #include "runtime/model_drawing.h"
 
 namespace prt::runtime {
@@ -52,26 +51,16 @@ CompressedDrawing::CompressedDrawing(const Model& model, const ExitStage& exit,
                                      const gl::Buffer& positions, const gl::Buffer& indices)
     : exit_(exit),
       index_count_(model.indices.size()),
+      constant_count_(first_constants(model.transfer->encoding).back()),
+      products_(*model.transfer, exit.layout()),
       weights_(model.transfer->encoding, exit.end_location()) {
   const cpca::Encoding& encoding = model.transfer->encoding;
   check_uniforms(encoding, exit.layout());
-  constant_count_ = first_constants(encoding).back();
   constants_of_vertices_ =
       gl::Buffer(std::span<const std::uint32_t>(constants_of_vertices(encoding)));
   single_array_ = make_array(positions, indices);
   make_chunks(model, positions);
-  std::uint32_t most_constants = 0;
-  for (std::size_t i = 0; i + 1 < chunk_constants_.size(); ++i)
-    most_constants = std::max(most_constants, chunk_constants_[i + 1] - chunk_constants_[i]);
-  gl::Defines defines = weights_.defines();
-  const gl::Defines exit_defines = exit.defines();
-  defines.insert(defines.end(), exit_defines.begin(), exit_defines.end());
-  single_program_ = gl::Program("transfer_single.vert", exit.fragment_shader(), defines);
-  defines.push_back(fmt::format("CONSTANT_COUNT {}", most_constants));
-  cluster_program_ = gl::Program("transfer_cluster.vert", exit.fragment_shader(), defines);
-  depth_program_ = gl::Program("depth.vert", "depth.frag");
-  constant_table_ = gl::Table(constant_count_ * static_cast<std::size_t>(exit.layout().pass_count) *
-                              exit.layout().pass_vector_count());
+  make_programs();
 }
 
 void CompressedDrawing::make_chunks(const Model& model, const gl::Buffer& positions) {
@@ -89,21 +78,52 @@ void CompressedDrawing::make_chunks(const Model& model, const gl::Buffer& positi
   chunk_array_ = make_array(positions, chunk_indices_);
 }
 
-void CompressedDrawing::set_constants(const std::vector<Vec4>& constants) {
-  constants_ = constants;
+void CompressedDrawing::make_programs() {
+  std::uint32_t most_constants = 0;
+  for (std::size_t i = 0; i + 1 < chunk_constants_.size(); ++i)
+    most_constants = std::max(most_constants, chunk_constants_[i + 1] - chunk_constants_[i]);
+  for (const bool varies : {false, true}) {
+    gl::Defines defines = light_field_defines(varies);
+    for (const gl::Defines& more : {weights_.defines(), exit_.defines()})
+      defines.insert(defines.end(), more.begin(), more.end());
+    single_programs_[varies] =
+        gl::Program("transfer_single.vert", exit_.fragment_shader(), defines);
+    defines.push_back(fmt::format("CONSTANT_COUNT {}", most_constants));
+    cluster_programs_[varies] =
+        gl::Program("transfer_cluster.vert", exit_.fragment_shader(), defines);
+  }
+  depth_program_ = gl::Program("depth.vert", "depth.frag");
+}
+
+void CompressedDrawing::set_light(const LightField& field) {
+  grid_ = field.grid;
+  constants_.clear();
+  for (const sh::Light& sample : field.samples) {
+    const std::vector<Vec4>& products = products_.evaluate(sample);
+    constants_.insert(constants_.end(), products.begin(), products.end());
+  }
+  if (constant_table_.count() != constants_.size()) constant_table_ = gl::Table(constants_.size());
   constant_table_.upload(constants_);
 }
 
+void CompressedDrawing::bind(const gl::Program& program, const Viewpoint& viewpoint) const {
+  program.use();
+  exit_.bind(program, viewpoint);
+  weights_.bind(program);
+  grid_.bind(program);
+}
+
 void CompressedDrawing::draw_single(const Viewpoint& viewpoint) const {
-  single_program_.use();
-  exit_.bind(single_program_, viewpoint);
-  single_program_.set("u_constants", 0);
+  const gl::Program& program = single_programs_[grid_.size > 1];
+  const int pass_count = exit_.layout().pass_count;
+  bind(program, viewpoint);
+  program.set("u_constants", 0);
+  program.set("u_sample_size", pass_count * static_cast<int>(constant_count_));
   constant_table_.bind(0);
-  weights_.bind(single_program_);
   single_array_.bind();
-  draw_passes(exit_.layout().pass_count, true, [&](int pass) {
+  draw_passes(pass_count, true, [&](int pass) {
     if (pass > 0) glClear(GL_DEPTH_BUFFER_BIT);  // every pass decides anew, and alike
-    single_program_.set("u_first_constant", pass * static_cast<int>(constant_count_));
+    program.set("u_first_constant", pass * static_cast<int>(constant_count_));
     draw_triangles(0, index_count_);
   });
 }
@@ -118,24 +138,29 @@ void CompressedDrawing::draw_clusters(const Viewpoint& viewpoint) const {
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  cluster_program_.use();
-  exit_.bind(cluster_program_, viewpoint);
-  weights_.bind(cluster_program_);
+  const gl::Program& program = cluster_programs_[grid_.size > 1];
+  bind(program, viewpoint);
   chunk_array_.bind();
+  const std::size_t pass_size = constant_count_ * exit_.layout().pass_vector_count();
+  const auto pass_count = static_cast<std::size_t>(exit_.layout().pass_count);
   // The first draw has set the coverage.
-  draw_passes(exit_.layout().pass_count, false, [&](int pass) { draw_chunks(pass); });
+  draw_passes(exit_.layout().pass_count, false, [&](int pass) {
+    for (std::size_t sample = 0; sample < grid_.point_count(); ++sample) {
+      program.set("u_light_sample", grid_.place(sample));
+      draw_chunks(program,
+                  &constants_[(sample * pass_count + static_cast<std::size_t>(pass)) * pass_size]);
+    }
+  });
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
 }
 
-void CompressedDrawing::draw_chunks(int pass) const {
-  const int first_location = cluster_program_.location("u_first_constant");
-  const int count_location = cluster_program_.location("u_constant_count");
-  const int constants_location = cluster_program_.location("u_constants");
+void CompressedDrawing::draw_chunks(const gl::Program& program, const Vec4* constants) const {
+  const int first_location = program.location("u_first_constant");
+  const int count_location = program.location("u_constant_count");
+  const int constants_location = program.location("u_constants");
   const std::size_t vectors = exit_.layout().pass_vector_count();
-  const Vec4* const constants =
-      constants_.data() + static_cast<std::size_t>(pass) * constant_count_ * vectors;
   for (std::size_t chunk = 0; chunk + 1 < chunk_offsets_.size(); ++chunk) {
     const std::size_t index_count = chunk_offsets_[chunk + 1] - chunk_offsets_[chunk];
     if (index_count == 0) continue;

@@ -18,9 +18,10 @@ struct ExitLayout {
   int row_count = 1;
   int pass_count = 1;            ///< 1, or 3: a colour each; 1 when diffuse
   int band_count = 1;            ///< of exit radiance
-  std::vector<int> functions;    ///< of the rows: sh::hemisphere_functions; empty when diffuse
-  std::vector<int> row_of_slot;  ///< row_count of them; the slots that fill the last vec4 have none
-  std::vector<int> order_of_pair;  ///< |m| of slots 2i and 2i + 1
+  std::vector<int> functions{};  ///< of the rows: sh::hemisphere_functions; empty when diffuse
+  std::vector<int>
+      row_of_slot{};  ///< row_count of them; the slots that fill the last vec4 have none
+  std::vector<int> order_of_pair{};  ///< |m| of slots 2i and 2i + 1
 
   bool is_glossy() const { return row_count > 1; }
   /// vec4 for one colour (when diffuse, for all).

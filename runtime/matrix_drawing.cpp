@@ -1,7 +1,6 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "runtime/model_drawing.h"
 
@@ -37,40 +36,41 @@ MatrixDrawing::MatrixDrawing(const Model& model, const ExitStage& exit, const gl
     : exit_(exit),
       index_count_(model.indices.size()),
       band_count_(model.signal->band_count),
-      channel_count_(model.signal->channel_count),
-      array_(array_with_positions(positions, indices)) {
-  const int coefficients = band_count_ * band_count_;
-  if (coefficients > free_uniform_vectors(gl::limits()))
-    throw_failed("this OpenGL has too few uniforms to draw uncompressed transfer",
-                 {.found = fmt::format("{} bands", band_count_)});
+      array_(array_with_positions(positions, indices)),
+      light_(static_cast<std::size_t>(band_count_ * band_count_)) {
   exit.attach(array_);
   const std::vector<Vec4> columns = columns_of(*model.signal, exit.layout());
   transfer_ = gl::Table(columns.size());
   transfer_.upload(columns);
-  gl::Defines defines = exit.defines();
-  defines.insert(defines.end(), {fmt::format("CHANNEL_COUNT {}", channel_count_),
-                                 fmt::format("COEFFICIENT_COUNT {}", coefficients)});
-  program_ = gl::Program("transfer_matrix.vert", exit.fragment_shader(), defines);
-  light_.assign(static_cast<std::size_t>(coefficients), Vec4(0.0f));
+  for (const bool varies : {false, true}) {
+    gl::Defines defines = exit.defines();
+    const gl::Defines light_defines = light_.defines(varies);
+    defines.insert(defines.end(), light_defines.begin(), light_defines.end());
+    defines.push_back(fmt::format("CHANNEL_COUNT {}", model.signal->channel_count));
+    programs_[varies] = gl::Program("transfer_matrix.vert", exit.fragment_shader(), defines);
+  }
 }
 
-void MatrixDrawing::set_light(const sh::Light& light) {
-  const sh::Light fitted = sh::with_band_count(light, band_count_);
-  for (std::size_t i = 0; i < light_.size(); ++i)
-    light_[i] =
-        Vec4(fitted.coefficients[0][i], fitted.coefficients[1][i], fitted.coefficients[2][i], 0.0f);
+void MatrixDrawing::set_light(const LightField& field) {
+  light_.set(field, [&](const sh::Light& sample, Vec4* vectors) {
+    const sh::Light fitted = sh::with_band_count(sample, band_count_);
+    for (std::size_t i = 0; i < fitted.coefficients[0].size(); ++i)
+      vectors[i] = Vec4(fitted.coefficients[0][i], fitted.coefficients[1][i],
+                        fitted.coefficients[2][i], 0.0f);
+  });
 }
 
 void MatrixDrawing::draw(const Viewpoint& viewpoint) const {
-  program_.use();
-  exit_.bind(program_, viewpoint);
-  program_.set("u_transfer", 0);
-  program_.set("u_light", light_);
+  const gl::Program& program = programs_[light_.varies()];
+  program.use();
+  exit_.bind(program, viewpoint);
+  program.set("u_transfer", 0);
   transfer_.bind(0);
+  light_.bind(program);
   array_.bind();
   draw_passes(exit_.layout().pass_count, true, [&](int pass) {
     if (pass > 0) glClear(GL_DEPTH_BUFFER_BIT);  // every pass decides anew, and alike
-    program_.set("u_pass", pass);
+    program.set("u_pass", pass);
     draw_triangles(0, index_count_);
   });
 }

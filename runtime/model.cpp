@@ -138,4 +138,10 @@ std::vector<float> relative_errors(const Model& model) {
   return relative;
 }
 
+float relative_error(const Model& model) {
+  double square = 0.0, count = 1e-30;
+  for (const float error : relative_errors(model)) square += double{error} * error, count += 1.0;
+  return static_cast<float>(std::sqrt(square / count));
+}
+
 }  // namespace prt::runtime

@@ -43,5 +43,7 @@ Model load_model(const std::filesystem::path& glb, const std::filesystem::path& 
 /// Root mean square error of each vertex' compressed transfer, relative to the root mean square
 /// of the signal. Empty unless the model has both transfers.
 std::vector<float> relative_errors(const Model& model);
+/// Their root mean square: the relative error of the whole compression. 0 without both transfers.
+float relative_error(const Model& model);
 
 }  // namespace prt::runtime

@@ -2,6 +2,7 @@
 // Colours are linear exit radiance, alpha is coverage.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,10 +10,11 @@
 
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "runtime/cluster_constants.h"
 #include "runtime/exit_stage.h"
+#include "runtime/light_vectors.h"
 #include "runtime/model.h"
 #include "runtime/weight_inputs.h"
-#include "sh/light.h"
 
 namespace prt::runtime {
 
@@ -25,8 +27,7 @@ class CompressedDrawing {
   CompressedDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
                     const gl::Buffer& indices);
 
-  /// What ClusterConstants::evaluate returned for the light.
-  void set_constants(const std::vector<Vec4>& constants);
+  void set_light(const LightField& field);
 
   /// All clusters in one draw call; constants are fetched for each vertex.
   void draw_single(const Viewpoint& viewpoint) const;
@@ -37,18 +38,23 @@ class CompressedDrawing {
  private:
   gl::VertexArray make_array(const gl::Buffer& positions, const gl::Buffer& indices) const;
   void make_chunks(const Model& model, const gl::Buffer& positions);
-  void draw_chunks(int pass) const;
+  void make_programs();
+  void bind(const gl::Program& program, const Viewpoint& viewpoint) const;
+  void draw_chunks(const gl::Program& program, const Vec4* constants) const;
 
   const ExitStage& exit_;
-  std::size_t index_count_, constant_count_;
+  std::size_t index_count_, constant_count_;  // constants of a pass
+  ClusterConstants products_;
   gl::Buffer constants_of_vertices_, chunk_indices_;
   WeightInputs weights_;
   gl::VertexArray single_array_, chunk_array_;
   std::vector<std::size_t> chunk_offsets_;
   std::vector<std::uint32_t> chunk_constants_;  // the first of each chunk, and how many there are
-  gl::Program single_program_, cluster_program_, depth_program_;
+  std::array<gl::Program, 2> single_programs_, cluster_programs_;  // of constant, of varying light
+  gl::Program depth_program_;
   gl::Table constant_table_;
-  std::vector<Vec4> constants_;
+  LightGrid grid_;
+  std::vector<Vec4> constants_;  // of each sample of the light, of each pass
 };
 
 /// Uncompressed diffuse transfer: the dot product of all coefficients for each vertex in its
@@ -56,7 +62,7 @@ class CompressedDrawing {
 class UncompressedDrawing {
  public:
   UncompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
-  void set_light(const sh::Light& light);
+  void set_light(const LightField& field);
   void draw(const Viewpoint& viewpoint) const;
 
  private:
@@ -64,8 +70,8 @@ class UncompressedDrawing {
   int band_count_;
   gl::VertexArray array_;
   gl::Table transfer_;
-  gl::Program program_;
-  std::vector<Vec4> light_;
+  LightVectors light_;
+  std::array<gl::Program, 2> programs_;  // of constant, of varying light
 };
 
 /// Uncompressed glossy transfer: the product of matrix and light for each vertex in its shader.
@@ -75,17 +81,17 @@ class MatrixDrawing {
   /// (failed) when it does not fit.
   MatrixDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
                 const gl::Buffer& indices);
-  void set_light(const sh::Light& light);
+  void set_light(const LightField& field);
   void draw(const Viewpoint& viewpoint) const;
 
  private:
   const ExitStage& exit_;
   std::size_t index_count_;
-  int band_count_, channel_count_;
+  int band_count_;
   gl::VertexArray array_;
   gl::Table transfer_;
-  gl::Program program_;
-  std::vector<Vec4> light_;  // R, G, B of each coefficient
+  LightVectors light_;
+  std::array<gl::Program, 2> programs_;  // of constant, of varying light
 };
 
 /// A colour for each vertex.

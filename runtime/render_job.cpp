@@ -40,6 +40,13 @@ void check_drawable(const Renderer& renderer, const View& view) {
                .advice = "Give a .glb of prt-compress, and --transfer for uncompressed transfer."});
 }
 
+/// Near lights take the place of the usual lamp.
+Lighting make_distant_lighting(const RenderOptions& options, const Model& model) {
+  const bool only_near = options.picture.light.empty() && !options.near_lights.empty();
+  return only_near ? lighting_from(sh::Light(model.band_count()))
+                   : make_lighting(options.picture, model.band_count());
+}
+
 /// Turns the light, and reports how long all that follows from it takes.
 void turn_light(Renderer& renderer, float degrees, Report& report) {
   const auto start = std::chrono::steady_clock::now();
@@ -97,7 +104,7 @@ void render(const RenderOptions& options, Report& report) {
   const Model model = load_model(picture.model, options.transfer);
   const View view = make_view(options, model);
   stage.emplace(report, "load light");
-  const Lighting lighting = make_lighting(picture, model.band_count());
+  const Lighting lighting = make_distant_lighting(options, model);
   stage.emplace(report, "open OpenGL");
   const gl::HeadlessContext context({.debug = options.debug});
   log::debug("OpenGL {}", gl::description());
@@ -108,6 +115,7 @@ void render(const RenderOptions& options, Report& report) {
   report.json()["pass_count"] = renderer.pass_count();
   check_drawable(renderer, view);
   renderer.set_lighting(lighting);
+  renderer.set_near_lights(options.near_lights, options.grid_size);
   turn_light(renderer, picture.light_rotation, report);
   stage.emplace(report, "draw");
   const image::Image image =

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "camera/camera.h"
 #include "core/report.h"
@@ -33,6 +34,8 @@ struct RenderOptions {
   std::filesystem::path transfer;  ///< uncompressed; empty: none
   std::optional<Draw> draw;        ///< unset: uncompressed when it is given, else single
   Passes passes = Passes::automatic;
+  std::vector<NearLight> near_lights{};  ///< beside the picture's light, if that is given
+  int grid_size = 3;                     ///< that near lights are sampled on
   Show show = Show::radiance;
   int sample_count = 4;  ///< in a pixel; 1: at pixel centres
   bool debug = false;    ///< log OpenGL's messages

@@ -6,12 +6,12 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 #include "cpca/superclusters.h"
 #include "gl/context.h"
 #include "image/false_color.h"
-#include "runtime/cluster_constants.h"
 #include "runtime/model_drawing.h"
 #include "runtime/shading.h"
 
@@ -59,6 +59,19 @@ std::vector<std::uint32_t> supercluster_labels(const gltf::PrecomputedTransfer& 
   return cpca::superclusters_of_points(transfer.encoding, transfer.first_clusters);
 }
 
+/// As a grid's, around all positions.
+LightGrid box_of(const std::vector<Vec3>& positions) {
+  LightGrid grid;
+  if (positions.empty()) return grid;
+  grid.low = grid.high = positions.front();
+  for (const Vec3& p : positions)
+    for (int axis = 0; axis < 3; ++axis) {
+      grid.low[axis] = std::min(grid.low[axis], p[axis]);
+      grid.high[axis] = std::max(grid.high[axis], p[axis]);
+    }
+  return grid;
+}
+
 std::vector<Vec3> error_colors(const Model& model) {
   std::vector<Vec3> colors;
   for (const float error : relative_errors(model))
@@ -71,11 +84,12 @@ std::vector<Vec3> error_colors(const Model& model) {
 struct Renderer::Drawings {
   Drawings(const Model& model, Passes passes)
       : bounds(model.bounds),
+        band_count(model.band_count()),
+        grid(box_of(model.positions)),
         positions(std::span(model.positions)),
         indices(std::span(model.indices)),
         exit(model, passes) {
     if (model.transfer) {
-      constants.emplace(*model.transfer, exit.layout());
       compressed.emplace(model, exit, positions, indices);
       const std::size_t index_count = model.indices.size();
       clusters.emplace(label_colors(model.transfer->encoding.cluster_of_point), index_count,
@@ -105,16 +119,17 @@ struct Renderer::Drawings {
     uncompressed->draw(viewpoint);
   }
 
-  void set_light(const sh::Light& light) {
-    if (compressed) compressed->set_constants(constants->evaluate(light));
-    if (uncompressed) uncompressed->set_light(light);
-    if (matrices) matrices->set_light(light);
+  void set_light(const LightField& field) {
+    if (compressed) compressed->set_light(field);
+    if (uncompressed) uncompressed->set_light(field);
+    if (matrices) matrices->set_light(field);
   }
 
   camera::Sphere bounds;
+  int band_count;
+  LightGrid grid;
   gl::Buffer positions, indices;
   ExitStage exit;
-  std::optional<ClusterConstants> constants;
   std::optional<CompressedDrawing> compressed;
   std::optional<UncompressedDrawing> uncompressed;
   std::optional<MatrixDrawing> matrices;
@@ -148,8 +163,18 @@ void Renderer::set_light_rotation(const Matrix4& world_from_light) {
   update_light();
 }
 
+void Renderer::set_near_lights(std::vector<NearLight> lights, int grid_size) {
+  near_lights_ = std::move(lights);
+  grid_size_ = grid_size;
+  update_light();
+}
+
 void Renderer::update_light() {
-  if (drawings_) drawings_->set_light(sh::rotated(light_, world_from_light_));
+  if (!drawings_) return;
+  LightGrid grid = drawings_->grid;
+  grid.size = grid_size_;
+  const sh::Light distant = sh::with_band_count(light_, drawings_->band_count);
+  drawings_->set_light(light_field(sh::rotated(distant, world_from_light_), near_lights_, grid));
 }
 
 int Renderer::pass_count() const { return drawings_ ? drawings_->exit.layout().pass_count : 0; }

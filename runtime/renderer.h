@@ -4,12 +4,14 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "camera/camera.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "image/image.h"
 #include "runtime/exit_stage.h"
+#include "runtime/light_field.h"
 #include "runtime/lighting.h"
 #include "runtime/model.h"
 
@@ -49,6 +51,9 @@ class Renderer {
   void set_lighting(const Lighting& lighting);
   /// Turns light and background; the light of set_lighting is what is turned.
   void set_light_rotation(const Matrix4& world_from_light);
+  /// Beside the distant light; sampled at `grid_size`³ points of a grid over the model, 1 to
+  /// kMaxGridSize. They are not turned.
+  void set_near_lights(std::vector<NearLight> lights, int grid_size);
 
   bool can_draw(Draw draw, Show show) const;
   /// That the model is drawn in; 0 without one.
@@ -76,6 +81,8 @@ class Renderer {
   int frame_samples_ = 0;
   gl::Texture environment_;
   sh::Light light_;
+  std::vector<NearLight> near_lights_;
+  int grid_size_ = 1;
   Matrix4 world_from_light_;
   std::unique_ptr<Drawings> drawings_;
 };

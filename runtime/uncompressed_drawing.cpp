@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "gl/context.h"
 #include "runtime/draw_calls.h"
 #include "runtime/model_drawing.h"
 
@@ -33,34 +31,35 @@ UncompressedDrawing::UncompressedDrawing(const Model& model, const gl::Buffer& p
                                          const gl::Buffer& indices)
     : index_count_(model.indices.size()),
       band_count_(model.signal->band_count),
-      array_(array_with_positions(positions, indices)) {
-  const std::size_t vectors = vector_count(band_count_);
-  if (3 * vectors > static_cast<std::size_t>(free_uniform_vectors(gl::limits())))
-    throw_failed("this OpenGL has too few uniforms to draw uncompressed transfer",
-                 {.found = fmt::format("{} bands", band_count_)});
+      array_(array_with_positions(positions, indices)),
+      light_(3 * vector_count(band_count_)) {
   const std::vector<Vec4> padded = padded_transfer(*model.signal);
   transfer_ = gl::Table(padded.size());
   transfer_.upload(padded);
-  program_ = gl::Program("transfer_uncompressed.vert", "radiance.frag",
-                         {fmt::format("CHANNEL_COUNT {}", model.signal->channel_count),
-                          fmt::format("VECTOR_COUNT {}", vectors)});
-  light_.assign(3 * vectors, Vec4(0.0f));
+  for (const bool varies : {false, true}) {
+    gl::Defines defines = light_.defines(varies);
+    defines.push_back(fmt::format("CHANNEL_COUNT {}", model.signal->channel_count));
+    defines.push_back(fmt::format("VECTOR_COUNT {}", vector_count(band_count_)));
+    programs_[varies] = gl::Program("transfer_uncompressed.vert", "radiance.frag", defines);
+  }
 }
 
-void UncompressedDrawing::set_light(const sh::Light& light) {
-  const sh::Light fitted = sh::with_band_count(light, band_count_);
-  const std::size_t vectors = light_.size() / 3;
-  for (std::size_t color = 0; color < 3; ++color)
-    for (std::size_t k = 0; k < fitted.coefficients[color].size(); ++k)
-      light_[color * vectors + k / 4][static_cast<int>(k % 4)] = fitted.coefficients[color][k];
+void UncompressedDrawing::set_light(const LightField& field) {
+  light_.set(field, [&](const sh::Light& sample, Vec4* vectors) {
+    const sh::Light fitted = sh::with_band_count(sample, band_count_);
+    for (std::size_t color = 0; color < 3; ++color, vectors += vector_count(band_count_))
+      for (std::size_t k = 0; k < fitted.coefficients[color].size(); ++k)
+        vectors[k / 4][static_cast<int>(k % 4)] = fitted.coefficients[color][k];
+  });
 }
 
 void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
-  program_.use();
-  program_.set("u_clip_from_world", viewpoint.clip_from_world);
-  program_.set("u_transfer", 0);
-  program_.set("u_light", light_);
+  const gl::Program& program = programs_[light_.varies()];
+  program.use();
+  program.set("u_clip_from_world", viewpoint.clip_from_world);
+  program.set("u_transfer", 0);
   transfer_.bind(0);
+  light_.bind(program);
   array_.bind();
   draw_triangles(0, index_count_);
 }

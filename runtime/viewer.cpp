@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <cmath>
+#include <numbers>
+#include <utility>
+
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -24,6 +28,22 @@ namespace {
 void open_dropped(GLFWwindow* window, int count, const char** paths) {
   auto* const viewer = static_cast<Viewer*>(glfwGetWindowUserPointer(window));
   for (int i = 0; i < count; ++i) viewer->open(paths[i]);
+}
+
+std::string describe(const fs::path& path, const Model& model, int pass_count) {
+  std::string text =
+      fmt::format("{}\n{} vertices, {} triangles\n{}, {} bands", path.filename().string(),
+                  model.positions.size(), model.indices.size() / 3,
+                  model.transfer ? model.transfer->brdf : model.signal->brdf, model.band_count());
+  if (model.row_count() > 1)
+    text += fmt::format(", {} exit rows, {}", model.row_count(),
+                        pass_count == 1 ? "one pass" : "a pass a colour");
+  if (model.transfer)
+    text += fmt::format("\n{} clusters, {} components", model.transfer->encoding.cluster_count,
+                        model.transfer->encoding.component_count);
+  if (model.transfer && model.signal)
+    text += fmt::format("\nerror of the compression: {:.2f}%", 100.0f * relative_error(model));
+  return text;
 }
 
 }  // namespace
@@ -107,12 +127,9 @@ void Viewer::load_model_file(const fs::path& path, const fs::path& transfer) {
     orbit_ = Orbit(
         camera::frame(model.bounds, options_.vertical_fov,
                       static_cast<float>(options_.width) / static_cast<float>(options_.height)));
-  model_text_ = fmt::format("{}\n{} vertices, {} triangles, {} bands", path.filename().string(),
-                            model.positions.size(), model.indices.size() / 3, model.band_count());
-  if (model.transfer)
-    model_text_ +=
-        fmt::format("\n{} clusters, {} components", model.transfer->encoding.cluster_count,
-                    model.transfer->encoding.component_count);
+  bounds_ = model.bounds;
+  update_near_lights();
+  model_text_ = describe(path, model, renderer_.pass_count());
   for (const Draw draw : {Draw::single, Draw::uncompressed})
     if (!renderer_.can_draw(view_.draw, view_.show)) {
       view_.draw = draw;
@@ -129,8 +146,10 @@ int Viewer::wanted_band_count() const {
 
 void Viewer::load_light_file(const fs::path& path) {
   const int bands = wanted_band_count();
-  const Lighting lighting =
-      path.empty() ? lighting_from(default_light(bands)) : load_lighting(path, bands);
+  const bool only_near = path.empty() && !options_.near_lights.empty();
+  const Lighting lighting = only_near      ? lighting_from(sh::Light(bands))
+                            : path.empty() ? lighting_from(default_light(bands))
+                                           : load_lighting(path, bands);
   renderer_.set_lighting(lighting);
   light_path_ = path;
   light_band_count_ = bands;
@@ -146,11 +165,27 @@ void Viewer::set_light_rotation(const Matrix4& world_from_light) {
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+void Viewer::update_near_lights() {
+  std::vector<NearLight> lights = options_.near_lights;
+  if (lamp_.on) {
+    const Matrix4 turn = light_rotation(lamp_.azimuth);
+    const float height = lamp_.height * std::numbers::pi_v<float> / 180.0f;
+    const Vec3 direction = transform_vector(turn, Vec3(0, std::sin(height), std::cos(height)));
+    lights.push_back({bounds_.center + direction * (lamp_.distance * bounds_.radius),
+                      0.25f * bounds_.radius, Vec3(40.0f, 36.0f, 30.0f)});
+  }
+  const auto start = Clock::now();
+  renderer_.set_near_lights(std::move(lights), options_.grid_size);
+  light_change_milliseconds_ =
+      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 void Viewer::draw_frame() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   apply_input();
+  animate();
   if (options_.panel) draw_panel();
   ImGui::Render();
   const gl::Window::Size size = window_.framebuffer_size();

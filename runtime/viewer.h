@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gl/context.h"
 #include "runtime/orbit.h"
@@ -19,8 +20,11 @@ struct ViewerOptions {
   std::filesystem::path light;       ///< empty: default_light
   std::filesystem::path screenshot;  ///< empty: interactive; else write the window and end
   int screenshot_frame_count = 3;    ///< frames drawn before the screenshot
-  int band_count = 0;                ///< of a projected map; 0: as the model
-  int width = 1280, height = 800;    ///< of the window
+  std::vector<NearLight> near_lights{};
+  int grid_size = 3;               ///< that near lights are sampled on
+  bool animate = false;            ///< turn the light as time goes by
+  int band_count = 0;              ///< of a projected map; 0: as the model
+  int width = 1280, height = 800;  ///< of the window
   Draw draw = Draw::single;
   Show show = Show::radiance;
   float exposure = 0.0f;       ///< stops
@@ -65,7 +69,10 @@ class Viewer {
   void draw_panel();
   void draw_mode_choice();
   void draw_timings();
+  void draw_light_controls();
   void turn_light(float dx, float dy);
+  void animate();
+  void update_near_lights();
   void set_light_rotation(const Matrix4& world_from_light);
   void write_screenshot() const;
 
@@ -84,6 +91,11 @@ class Viewer {
   std::string model_text_, light_text_, message_;
   int model_band_count_ = 0, light_band_count_ = 0;  // of what is loaded; 0: nothing
   Matrix4 world_from_light_;
+  camera::Sphere bounds_;  // of the model
+  struct {
+    bool on = false;
+    float azimuth = 40.0f, height = 35.0f, distance = 2.0f;  // degrees, degrees, model radii
+  } lamp_;
   std::array<float, kTimingCount> frame_milliseconds_{};
   std::size_t frame_count_ = 0;
   double light_change_milliseconds_ = 0.0;

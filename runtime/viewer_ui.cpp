@@ -1,6 +1,9 @@
 // The viewer's panel and its mouse.
 #include <fmt/format.h>
 #include <imgui.h>
+// GLFW's names of keys; its functions are not needed here.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 #include <algorithm>
 #include <numbers>
@@ -51,6 +54,35 @@ void Viewer::turn_light(float dx, float dy) {
   set_light_rotation(turned(about_up, view_.camera.axes().right, dy * radians_per_pixel));
 }
 
+void Viewer::animate() {
+  if (!ImGui::GetIO().WantCaptureKeyboard && ImGui::IsKeyPressed(GLFW_KEY_SPACE, false))
+    options_.animate = !options_.animate;
+  if (!options_.animate) return;
+  constexpr float kRadiansPerSecond = 0.5f;
+  set_light_rotation(
+      turned(world_from_light_, Vec3(0, 1, 0), kRadiansPerSecond * ImGui::GetIO().DeltaTime));
+}
+
+void Viewer::draw_light_controls() {
+  ImGui::Text("Light: %s", light_text_.c_str());
+  bool background = view_.background == Background::environment;
+  if (ImGui::Checkbox("Background", &background))
+    view_.background = background ? Background::environment : Background::color;
+  ImGui::SameLine();
+  ImGui::Checkbox("Turn (space)", &options_.animate);
+  ImGui::SameLine();
+  if (ImGui::Button("Reset")) set_light_rotation(Matrix4());
+  bool changed = ImGui::Checkbox("Lamp near the model", &lamp_.on);
+  if (lamp_.on) {
+    changed |= ImGui::SliderFloat("Azimuth", &lamp_.azimuth, -180.0f, 180.0f, "%.0f deg");
+    changed |= ImGui::SliderFloat("Height", &lamp_.height, -90.0f, 90.0f, "%.0f deg");
+    changed |= ImGui::SliderFloat("Distance", &lamp_.distance, 1.3f, 6.0f, "%.1f radii");
+  }
+  if (lamp_.on || !options_.near_lights.empty())
+    changed |= ImGui::SliderInt("Samples a side", &options_.grid_size, 1, kMaxGridSize);
+  if (changed) update_near_lights();
+}
+
 void Viewer::draw_panel() {
   ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
   ImGui::Begin("prtkit", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
@@ -61,12 +93,7 @@ void Viewer::draw_panel() {
   ImGui::Separator();
   draw_mode_choice();
   ImGui::SliderFloat("Exposure", &view_.exposure, -6.0f, 6.0f, "%+.1f stops");
-  ImGui::Text("Light: %s", light_text_.c_str());
-  bool background = view_.background == Background::environment;
-  if (ImGui::Checkbox("Background", &background))
-    view_.background = background ? Background::environment : Background::color;
-  ImGui::SameLine();
-  if (ImGui::Button("Reset light")) set_light_rotation(Matrix4());
+  draw_light_controls();
   ImGui::Separator();
   draw_timings();
   ImGui::TextDisabled(

@@ -1,5 +1,4 @@
-// Element of a one-dimensional array that is kept in the rows of a texture (gl::Table).
+// Element of a one-dimensional array that is kept in the rows of a texture (gl::Table), 2048 a row.
 vec4 table_at(sampler2D table, int index) {
-  int width = textureSize(table, 0).x;
-  return texelFetch(table, ivec2(index % width, index / width), 0);
+  return texelFetch(table, ivec2(index & 2047, index >> 11), 0);
 }

@@ -1,10 +1,10 @@
 // Uncompressed transfer [Sloan02]: radiance = t_p · l for each colour, t_p from a table of
-// CHANNEL_COUNT × VECTOR_COUNT vec4 a vertex (coefficients in fours, zero padded).
+// CHANNEL_COUNT × VECTOR_COUNT vec4 a vertex (coefficients in fours, zero padded). The light has as
+// many for R, then G, then B.
 #include "position.glsl"
-#include "table.glsl"
+#include "light_vectors.glsl"
 
 uniform sampler2D u_transfer;
-uniform vec4 u_light[3 * VECTOR_COUNT];  // R, G, B
 
 centroid out vec3 v_radiance;
 
@@ -19,8 +19,8 @@ void main() {
 #else
     vec4 green = red, blue = red;
 #endif
-    v_radiance += vec3(dot(red, u_light[i]), dot(green, u_light[VECTOR_COUNT + i]),
-                       dot(blue, u_light[2 * VECTOR_COUNT + i]));
+    v_radiance += vec3(dot(red, light_vector(i)), dot(green, light_vector(VECTOR_COUNT + i)),
+                       dot(blue, light_vector(2 * VECTOR_COUNT + i)));
   }
   place_vertex();
 }

@@ -1,10 +1,10 @@
 // prt-render: pictures of a model under a light, without a window. The work is in
 // runtime/render_job.h and runtime/reference/reference_job.h.
-#include <array>
 #include <map>
 #include <string>
 
 #include "brdf/brdf.h"
+#include "cli/choice_option.h"
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "cli/vector_option.h"
@@ -12,6 +12,7 @@
 #include "ray/engine.h"
 #include "runtime/reference/reference_job.h"
 #include "runtime/render_job.h"
+#include "tools/near_light_options.h"
 
 namespace {
 
@@ -32,15 +33,6 @@ const std::map<std::string, Show> kShows = {{"radiance", Show::radiance},
 const std::map<std::string, Background> kBackgrounds = {{"environment", Background::environment},
                                                         {"color", Background::color},
                                                         {"none", Background::none}};
-
-template <class Enum, class Value>
-void add_choice(CLI::App& app, const char* name, Value& value,
-                const std::map<std::string, Enum>& names, const std::string& description) {
-  app.add_option_function<std::string>(
-         name, [&](const std::string& text) { value = names.at(text); }, description)
-      ->check(CLI::IsMember(names))
-      ->type_name("NAME");
-}
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("model", options.model, "The model, .glb or .gltf")->required();
@@ -74,20 +66,23 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
          "Width and height in pixels [1024x1024]")
       ->type_name("WxH");
   app.add_option("--exposure", options.exposure, "Stops, for .png");
-  add_choice(app, "--background", options.background, kBackgrounds,
-             "Behind the model [environment]");
+  prt::cli::add_choice(app, "--background", options.background, kBackgrounds,
+                       "Behind the model [environment]");
   prt::cli::add_vector(app, "--background-color", options.background_color, "Linear [0.1,0.1,0.1]");
 }
 
 void add_render_options(CLI::App& app, prt::runtime::RenderOptions& options) {
   app.option_defaults()->group("Real-time rendering");
   app.add_option("--transfer", options.transfer, "Uncompressed transfer of prt-transfer (.exr)");
-  add_choice(app, "--draw", options.draw, kDraws,
-             "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
-             "with --transfer]");
-  add_choice(app, "--passes", options.passes, kPasses,
-             "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
-  add_choice(app, "--show", options.show, kShows, "What to show [radiance]");
+  prt::cli::add_choice(
+      app, "--draw", options.draw, kDraws,
+      "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
+      "with --transfer]");
+  prt::cli::add_choice(
+      app, "--passes", options.passes, kPasses,
+      "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
+  prt::add_near_lights(app, options.near_lights, options.grid_size);
+  prt::cli::add_choice(app, "--show", options.show, kShows, "What to show [radiance]");
   app.add_option("--antialias", options.sample_count,
                  "Samples in a pixel, at most what the driver has; 1: pixel centres")
       ->check(CLI::Range(1, 64));
@@ -116,7 +111,8 @@ void add_reference_options(CLI::App& app, prt::runtime::ReferenceOptions& option
   app.add_option("--noise-output", options.noise,
                  "Write the standard error of each pixel too (.exr), for prt-inspect --noise")
       ->needs(flag);
-  for (const char* name : {"--transfer", "--draw", "--passes", "--show"})
+  for (const char* name : {"--transfer", "--draw", "--passes", "--show", "--point-light",
+                           "--sphere-light", "--light-grid"})
     flag->excludes(app.get_option(name));
 }
 

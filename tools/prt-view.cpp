@@ -5,6 +5,7 @@
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "runtime/viewer.h"
+#include "tools/near_light_options.h"
 
 namespace {
 
@@ -36,6 +37,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_option("--exposure", options.exposure, "Stops");
   app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees")
       ->check(CLI::Range(1.0, 170.0));
+  app.add_flag("--animate", options.animate, "Turn the light as time goes by");
+  prt::add_near_lights(app, options.near_lights, options.grid_size);
   app.option_defaults()->group("Screenshot");
   app.add_option("--screenshot", options.screenshot, "Write the window to a .png and end");
   app.add_option("--frames", options.screenshot_frame_count, "Frames drawn before the screenshot")

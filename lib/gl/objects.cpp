@@ -84,16 +84,14 @@ void Texture::bind(int unit) const {
 }
 
 Table::Table(std::size_t count) : count_(count) {
-  // A power of two, so that the shader's division is a shift; rows long enough to be few.
+  // A constant power of two, so that the shader need not divide; OpenGL ES 3.0 promises as much.
   constexpr std::size_t kRowLength = 2048;
-  const std::size_t width =
-      std::min<std::size_t>(kRowLength, static_cast<std::size_t>(limits().max_texture_size));
-  const std::size_t height = std::max<std::size_t>((count + width - 1) / width, 1);
+  const std::size_t height = std::max<std::size_t>((count + kRowLength - 1) / kRowLength, 1);
   if (height > static_cast<std::size_t>(limits().max_texture_size))
     throw_failed("the model's data do not fit a texture of this OpenGL",
                  {.found = std::to_string(count) + " vec4"});
   static_cast<Texture&>(*this) =
-      Texture(Format::rgba32f, static_cast<int>(width), static_cast<int>(height));
+      Texture(Format::rgba32f, static_cast<int>(kRowLength), static_cast<int>(height));
 }
 
 void Table::upload(std::span<const Vec4> values) {

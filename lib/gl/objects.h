@@ -84,14 +84,15 @@ class Texture {
   int width_ = 0, height_ = 0;
 };
 
-/// A one-dimensional array of vec4 as large as textures can be: element i is texel (i % width,
-/// i / width) of an RGBA32F texture; table.glsl has the fetch.
+/// A one-dimensional array of vec4 as large as textures can be: element i is texel (i % 2048,
+/// i / 2048) of an RGBA32F texture; table.glsl has the fetch.
 class Table : public Texture {
  public:
   Table() = default;
   explicit Table(std::size_t count);
   /// All elements; the same number as at construction.
   void upload(std::span<const Vec4> values);
+  std::size_t count() const { return count_; }
 
  private:
   std::size_t count_ = 0;

@@ -52,7 +52,8 @@ fs::path shader_folder() {
 ShaderSource load_shader_source(const std::string& file, const Defines& defines, bool es) {
   ShaderSource source;
   source.text = es ? "#version 300 es\n"
-                     "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+                     "precision highp float;\nprecision highp int;\n"
+                     "precision highp sampler2D;\nprecision highp sampler2DArray;\n"
                    : "#version 330 core\n";
   for (const std::string& define : defines) source.text += "#define " + define + "\n";
   append(shader_folder() / file, source);

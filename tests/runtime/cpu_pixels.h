@@ -19,10 +19,10 @@ constexpr int kWidth = 96, kHeight = 64;
 /// interpolated.
 class CpuPixels {
  public:
-  CpuPixels(const Model& model, const View& view, const sh::Light& light)
+  CpuPixels(const Model& model, const View& view, LightField field)
       : model_(model),
         view_(view),
-        light_(light),
+        field_(std::move(field)),
         engine_(ray::make_embree_engine({model.positions, model.indices})) {}
 
   /// False beside the model and near an edge of its outline, where rasteriser and ray may differ.
@@ -48,8 +48,9 @@ class CpuPixels {
     return hit;
   }
   std::vector<Vec3> values(std::uint32_t index) const {
-    return view_.draw == Draw::uncompressed ? exit_values(*model_.signal, index, light_)
-                                            : exit_values(*model_.transfer, index, light_);
+    const sh::Light light = light_in(field_, model_.positions[index]);
+    return view_.draw == Draw::uncompressed ? exit_values(*model_.signal, index, light)
+                                            : exit_values(*model_.transfer, index, light);
   }
   /// The frame that views and coefficients are interpolated in; twin of send_exit.glsl.
   Matrix4 world_from_smooth(std::uint32_t index) const {
@@ -85,7 +86,7 @@ class CpuPixels {
 
   const Model& model_;
   const View& view_;
-  const sh::Light& light_;
+  LightField field_;
   std::unique_ptr<ray::Engine> engine_;
 };
 

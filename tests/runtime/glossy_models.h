@@ -79,4 +79,19 @@ inline gltf::PrecomputedTransfer in_pairs(const signal::TransferSignal& signal) 
   return transfer;
 }
 
+/// What a compression stands for.
+inline signal::TransferSignal decompressed(const gltf::PrecomputedTransfer& transfer) {
+  signal::TransferSignal signal;
+  signal.band_count = transfer.band_count;
+  signal.row_count = transfer.row_count;
+  signal.channel_count = transfer.channel_count;
+  signal.blocks = {{"all", transfer.encoding.point_count}};
+  const auto dimension = static_cast<std::size_t>(signal.dimension());
+  signal.values.resize(transfer.encoding.point_count * dimension);
+  for (std::size_t p = 0; p < transfer.encoding.point_count; ++p)
+    cpca::reconstruct(transfer.encoding, p,
+                      std::span(signal.values).subspan(p * dimension, dimension));
+  return signal;
+}
+
 }  // namespace prt::runtime

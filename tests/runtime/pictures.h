@@ -33,11 +33,11 @@ inline View view_of(const Model& model) {
 
 /// That pixels of a picture of view_of(model), one sample each, are those of the CPU to a step of
 /// an 8-bit picture.
-inline void expect_cpu_pixels(const Model& model, Draw draw, const sh::Light& light,
+inline void expect_cpu_pixels(const Model& model, Draw draw, const LightField& field,
                               const image::Image& image) {
   View view = view_of(model);
   view.draw = draw;
-  const CpuPixels cpu(model, view, light);
+  const CpuPixels cpu(model, view, field);
   std::size_t compared_count = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -48,6 +48,11 @@ inline void expect_cpu_pixels(const Model& model, Draw draw, const sh::Light& li
       EXPECT_EQ(image.at(x, y)[3], 1.0f);
     }
   EXPECT_GT(compared_count, 500u);
+}
+
+inline void expect_cpu_pixels(const Model& model, Draw draw, const sh::Light& light,
+                              const image::Image& image) {
+  expect_cpu_pixels(model, draw, LightField{{}, {light}}, image);
 }
 
 }  // namespace prt::runtime
