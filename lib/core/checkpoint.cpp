@@ -1,0 +1,198 @@
+#include "core/checkpoint.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "core/cpu.h"
+#include "core/hash.h"
+#include "core/log.h"
+
+namespace prt {
+
+namespace {
+
+constexpr std::string_view kKind = "prtkit unfinished work, version 1\n";
+
+/// Before each result; the hash of both, kHashSize characters, comes after it.
+struct RecordHead {
+  std::uint32_t stage, index;
+  std::uint64_t byte_count;
+};
+constexpr std::size_t kHashSize = 32;
+
+std::string make_head(const std::string& key) {
+  Hasher hasher;
+  for (const std::string_view part :
+       {std::string_view(PRTKIT_VERSION "\n"), std::string_view(simd_level_name(simd_level())),
+        std::string_view(key)}) {
+    hasher.add(part.data(), part.size());
+  }
+  return std::string(kKind) + hasher.hex();
+}
+
+bool read_all(int descriptor, void* bytes, std::size_t count, std::size_t offset) {
+  auto* to = static_cast<char*>(bytes);
+  while (count > 0) {
+    const ssize_t done = pread(descriptor, to, count, static_cast<off_t>(offset));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    to += done;
+    offset += static_cast<std::size_t>(done);
+    count -= static_cast<std::size_t>(done);
+  }
+  return true;
+}
+
+bool write_all(int descriptor, const void* bytes, std::size_t count, std::size_t offset) {
+  const auto* from = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t done = pwrite(descriptor, from, count, static_cast<off_t>(offset));
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) return false;
+    from += done;
+    offset += static_cast<std::size_t>(done);
+    count -= static_cast<std::size_t>(done);
+  }
+  return true;
+}
+
+/// Whether the hash that follows the record at `offset` is its own.
+bool is_whole(int descriptor, const RecordHead& head, std::size_t offset) {
+  Hasher hasher;
+  hasher.add(&head, sizeof head);
+  std::vector<char> chunk(std::min<std::size_t>(head.byte_count, 1 << 20));
+  offset += sizeof head;
+  for (std::size_t left = head.byte_count; left > 0;) {
+    const std::size_t count = std::min(left, chunk.size());
+    if (!read_all(descriptor, chunk.data(), count, offset)) return false;
+    hasher.add(chunk.data(), count);
+    offset += count;
+    left -= count;
+  }
+  std::array<char, kHashSize> hash{};
+  return read_all(descriptor, hash.data(), kHashSize, offset) &&
+         hasher.hex() == std::string_view(hash.data(), kHashSize);
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(const CheckpointOptions& options, const std::string& key)
+    : path_(options.path),
+      after_seconds_(options.after_seconds),
+      head_(make_head(key)),
+      given_up_(path_.empty()) {
+  if (!given_up_) open_existing();
+}
+
+Checkpoint::~Checkpoint() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void Checkpoint::open_existing() {
+  descriptor_ = open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor_ < 0) {
+    if (errno != ENOENT) give_up(std::strerror(errno));
+    return;
+  }
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) return give_up("used by another process");
+  std::string head(head_.size(), '\0');
+  const bool read = read_all(descriptor_, head.data(), head.size(), 0);
+  struct stat status {};
+  if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode) ||
+      (status.st_size > 0 && !head.starts_with(kKind))) {
+    return give_up("exists and is something else");
+  }
+  begun_ = read && head == head_;
+  if (begun_) read_records();
+}
+
+// A record whose hash is wrong is skipped: it may have been overwritten when the process died. What
+// follows the last good one is overwritten.
+void Checkpoint::read_records() {
+  struct stat status {};
+  fstat(descriptor_, &status);
+  const auto size = static_cast<std::size_t>(status.st_size);
+  end_ = head_.size();
+  RecordHead head{};
+  for (std::size_t offset = end_; size - offset >= sizeof head + kHashSize;) {
+    if (!read_all(descriptor_, &head, sizeof head, offset)) return;
+    if (head.byte_count > size - offset - sizeof head - kHashSize) return;
+    const bool whole = is_whole(descriptor_, head, offset);
+    const Place place{offset + sizeof head, head.byte_count};
+    offset = place.offset + place.byte_count + kHashSize;
+    if (!whole) continue;
+    places_[{head.stage, head.index}] = place;
+    end_ = offset;
+  }
+}
+
+bool Checkpoint::restore_bytes(Name name, std::span<std::byte> result) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = places_.find(name);
+  return found != places_.end() && found->second.byte_count == result.size() &&
+         read_all(descriptor_, result.data(), result.size(), found->second.offset);
+}
+
+void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
+  const std::lock_guard lock(mutex_);
+  if (given_up_ || (!begun_ && watch_.seconds() < after_seconds_)) return;
+  if (!begun_) begin_file();
+  if (given_up_) return;
+  const RecordHead head{name.stage, name.index, result.size()};
+  Hasher hasher;
+  hasher.add(&head, sizeof head);
+  hasher.add(result);
+  const auto found = places_.find(name);
+  assert(found == places_.end() || found->second.byte_count == result.size());
+  const std::size_t offset = found == places_.end() ? end_ + sizeof head : found->second.offset;
+  if (!write_all(descriptor_, &head, sizeof head, offset - sizeof head) ||
+      !write_all(descriptor_, result.data(), result.size(), offset) ||
+      !write_all(descriptor_, hasher.hex().data(), kHashSize, offset + result.size())) {
+    give_up(std::strerror(errno));
+    unlink(path_.c_str());  // leaves room for the output
+    return;
+  }
+  places_[name] = {offset, result.size()};
+  end_ = std::max(end_, offset + result.size() + kHashSize);
+}
+
+void Checkpoint::begin_file() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a size limit then shows as EFBIG, and the work goes on
+  if (descriptor_ < 0) {
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      return give_up(std::strerror(errno));
+    }
+  }
+  if (ftruncate(descriptor_, 0) != 0 || !write_all(descriptor_, head_.data(), head_.size(), 0)) {
+    return give_up(std::strerror(errno));
+  }
+  begun_ = true;
+  end_ = head_.size();
+}
+
+void Checkpoint::give_up(const char* why) {
+  log::warning("{}: {}: this run cannot be continued if it is interrupted", path_.string(), why);
+  given_up_ = true;
+  places_.clear();
+}
+
+void remove_checkpoint(const std::filesystem::path& path) {
+  std::string kind(kKind.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(kind.data(), static_cast<std::streamsize>(kind.size()));
+  if (file && kind == kKind) unlink(path.c_str());
+}
+
+}  // namespace prt
