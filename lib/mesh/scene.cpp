@@ -135,6 +135,21 @@ MetallicRoughness metallic_roughness_at_vertex(const Scene& scene, const Primiti
   return result;
 }
 
+namespace {
+
+void add_reflection(Hasher& hasher, const Material& m) {
+  const float factors[] = {m.ior,
+                           m.specular,
+                           m.specular_color.x,
+                           m.specular_color.y,
+                           m.specular_color.z,
+                           m.has_anisotropy ? m.anisotropy_strength : 0.0f,
+                           m.has_anisotropy ? m.anisotropy_rotation : 0.0f};
+  hasher.add(std::span<const float>(factors));
+}
+
+}  // namespace
+
 std::string mesh_hash(const Scene& scene) {
   Hasher hasher;
   for (const Primitive& primitive : scene.primitives) {
@@ -144,11 +159,42 @@ std::string mesh_hash(const Scene& scene) {
     hasher.add(std::span<const Vec3>(mesh.positions));
     hasher.add(std::span<const Vec3>(mesh.normals));
     std::vector<Vec3> albedo(mesh.vertex_count());
+    std::vector<Vec2> metallic_roughness(mesh.vertex_count());
     for (std::size_t i = 0; i < albedo.size(); ++i) {
       albedo[i] = albedo_at_vertex(scene, primitive, i);
+      const MetallicRoughness at_vertex = metallic_roughness_at_vertex(scene, primitive, i);
+      metallic_roughness[i] = Vec2(at_vertex.metallic, at_vertex.roughness);
     }
     hasher.add(std::span<const Vec3>(albedo));
+    hasher.add(std::span<const Vec2>(metallic_roughness));
     hasher.add(std::span<const std::uint32_t>(mesh.indices));
+    hasher.add(std::span<const Vec4>(mesh.tangents));
+    add_reflection(hasher, primitive.material < 0
+                               ? Material()
+                               : scene.materials[static_cast<std::size_t>(primitive.material)]);
+  }
+  return hasher.hex();
+}
+
+std::string scene_hash(const Scene& scene) {
+  Hasher hasher;
+  const std::string geometry = mesh_hash(scene);
+  hasher.add(geometry.data(), geometry.size());
+  for (const Primitive& primitive : scene.primitives) {
+    hasher.add(std::span<const Vec2>(primitive.mesh.texcoords));
+    hasher.add(std::span<const Vec4>(primitive.mesh.colors));
+    hasher.add(&primitive.material, sizeof primitive.material);
+  }
+  for (const Material& material : scene.materials) {
+    hasher.add(&material.base_color, sizeof material.base_color);
+    const int texture[] = {material.base_color_image, static_cast<int>(material.wrap_s),
+                           static_cast<int>(material.wrap_t)};
+    hasher.add(texture, sizeof texture);
+  }
+  for (const image::Image& image : scene.images) {
+    const int size[] = {image.width, image.height, image.channel_count};
+    hasher.add(size, sizeof size);
+    hasher.add(std::span<const float>(image.pixels));
   }
   return hasher.hex();
 }

@@ -71,9 +71,12 @@ struct MetallicRoughness {
 MetallicRoughness metallic_roughness_at_vertex(const Scene& scene, const Primitive& primitive,
                                                std::size_t vertex);
 
-/// Content hash of what a transfer is baked from and belongs to: positions, normals, albedo of the
-/// vertices and indices of all primitives. Of a texture, what lies between the vertices is left
-/// out.
+/// Content hash of what a transfer, diffuse or glossy, is baked from and belongs to: positions,
+/// normals, tangents, indices and what the vertices reflect by, of all primitives. Of textures,
+/// what lies between the vertices is left out.
 std::string mesh_hash(const Scene& scene);
+
+/// Content hash of all that light meets in the scene: that, and the textures between the vertices.
+std::string scene_hash(const Scene& scene);
 
 }  // namespace prt::mesh

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace prt::mesh {
 namespace {
 
@@ -46,7 +48,7 @@ TEST(Albedo, TexturesWrapAsTheirMaterialSays) {
   EXPECT_FLOAT_EQ(albedo_where(-1.25f, Wrap::mirror), 1.0f);
 }
 
-TEST(MeshHash, ChangesWithGeometryAndColoursAndNothingElse) {
+TEST(MeshHash, ChangesWithGeometryAndReflectionAndNothingElse) {
   const Scene scene = textured({{0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.5f}}, Wrap::repeat);
   const std::string hash = mesh_hash(scene);
   Scene other = scene;
@@ -64,6 +66,42 @@ TEST(MeshHash, ChangesWithGeometryAndColoursAndNothingElse) {
   other = scene;
   other.primitives[0].mesh.positions[0].x = 0.1f;
   EXPECT_NE(mesh_hash(other), hash);
+  other = scene;
+  other.primitives[0].mesh.tangents.assign(3, Vec4(1, 0, 0, 1));
+  const std::string with_tangents = mesh_hash(other);
+  EXPECT_NE(with_tangents, hash);
+  other.primitives[0].mesh.tangents[1] = Vec4(0, 1, 0, 1);
+  EXPECT_NE(mesh_hash(other), with_tangents);
+}
+
+TEST(MeshHash, ChangesWithEachFactorOfReflection) {
+  const Scene scene = textured({{0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.5f}}, Wrap::repeat);
+  std::set<std::string> hashes{mesh_hash(scene)};
+  const auto add = [&](const auto& change) {
+    Scene other = scene;
+    other.materials[0].has_anisotropy = true;
+    change(other.materials[0]);
+    hashes.insert(mesh_hash(other));
+  };
+  add([](Material& m) { m.metallic = 0.5f; });
+  add([](Material& m) { m.roughness = 0.5f; });
+  add([](Material& m) { m.ior = 1.25f; });
+  add([](Material& m) { m.specular = 0.5f; });
+  add([](Material& m) { m.specular_color.y = 0.5f; });
+  add([](Material& m) { m.anisotropy_strength = 0.5f; });
+  add([](Material& m) { m.anisotropy_rotation = 0.5f; });
+  EXPECT_EQ(hashes.size(), 8u);
+}
+
+TEST(SceneHash, ChangesWithTheTextureBetweenTheVerticesToo) {
+  const Scene scene = textured(std::vector<Vec2>(3, Vec2(0.25f, 0.5f)), Wrap::repeat);
+  Scene other = scene;
+  other.images[0].at(1, 0)[0] = 0.5f;
+  EXPECT_EQ(mesh_hash(other), mesh_hash(scene));
+  EXPECT_NE(scene_hash(other), scene_hash(scene));
+  other = scene;
+  other.primitives[0].mesh.positions[0].x = 0.1f;
+  EXPECT_NE(scene_hash(other), scene_hash(scene));
 }
 
 }  // namespace
