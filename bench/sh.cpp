@@ -33,7 +33,7 @@ void evaluate_directions(benchmark::State& state) {
     x[i] = r * std::cos(phi);
     y[i] = r * std::sin(phi);
   }
-  std::vector<float> values(static_cast<std::size_t>(coefficient_count(band_count)) * kBlock);
+  std::vector<float> values(row_size(band_count) * kBlock);
   for (auto _ : state) {
     evaluate_batch(band_count, x.data(), y.data(), z.data(), kBlock, values.data(), kBlock);
     benchmark::DoNotOptimize(values.data());
@@ -46,7 +46,7 @@ BENCHMARK(evaluate_directions)->ArgName("bands")->Arg(3)->Arg(5)->Arg(6)->Arg(8)
 // The plain way that the batch is measured against.
 void evaluate_directions_one_by_one(benchmark::State& state) {
   const int band_count = static_cast<int>(state.range(0));
-  std::vector<float> values(static_cast<std::size_t>(coefficient_count(band_count)));
+  std::vector<float> values(row_size(band_count));
   Vec3 direction(0.48f, -0.6f, 0.64f);
   for (auto _ : state) {
     benchmark::DoNotOptimize(direction);
@@ -67,7 +67,7 @@ Matrix4 some_rotation() {
 void rotate_vectors(benchmark::State& state) {
   const int band_count = static_cast<int>(state.range(0));
   const Rotation rotation(band_count, some_rotation());
-  const std::size_t size = static_cast<std::size_t>(coefficient_count(band_count)) * kBlock;
+  const std::size_t size = row_size(band_count) * kBlock;
   const std::vector<float> from = random_values(size);
   std::vector<float> to(size);
   for (auto _ : state) {
@@ -90,7 +90,7 @@ BENCHMARK(rotate_light)->ArgName("bands")->Arg(5)->Arg(10)->Unit(benchmark::kMic
 void multiply_functions(benchmark::State& state) {
   const int band_count = static_cast<int>(state.range(0));
   const ProductTable table(band_count);
-  const auto size = static_cast<std::size_t>(coefficient_count(band_count));
+  const auto size = row_size(band_count);
   const std::vector<float> a = random_values(size), b = random_values(size);
   std::vector<float> product(size);
   for (auto _ : state) {

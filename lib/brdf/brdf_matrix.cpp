@@ -15,10 +15,6 @@ namespace {
 using linalg::MatrixD;
 using linalg::Transpose;
 
-std::size_t size_of(int band_count) {
-  return static_cast<std::size_t>(sh::coefficient_count(band_count));
-}
-
 /// tr(P_r B P_c Bᵀ): the energy of a kernel with moments B within the bands; P_c = I sums exit
 /// radiance over unit lights.
 double captured(const std::vector<double>& b, std::vector<double> p_rows,
@@ -70,11 +66,11 @@ void turn_about_z(double angle, int band_count, std::size_t stride, double* valu
 
 void turn(double angle, int row_band_count, int column_band_count, std::vector<double>& b) {
   if (angle == 0) return;
-  const std::size_t column_count = size_of(column_band_count);
+  const std::size_t column_count = sh::row_size(column_band_count);
   for (std::size_t j = 0; j < column_count; ++j) {
     turn_about_z(angle, row_band_count, column_count, &b[j]);
   }
-  for (std::size_t i = 0; i < size_of(row_band_count); ++i) {
+  for (std::size_t i = 0; i < sh::row_size(row_band_count); ++i) {
     turn_about_z(angle, column_band_count, 1, &b[i * column_count]);
   }
 }
@@ -87,7 +83,7 @@ double share(double lost, double kept) { return lost > 0 ? lost / (lost + kept) 
 BrdfMatrix brdf_matrix(const Brdf& brdf, int row_band_count, int column_band_count,
                        double tolerance, const std::filesystem::path& folder) {
   BrdfMatrix result{row_band_count, column_band_count, {}, 0, {}};
-  const std::size_t size = size_of(row_band_count) * size_of(column_band_count);
+  const std::size_t size = sh::row_size(row_band_count) * sh::row_size(column_band_count);
   std::vector<double> mean(size);
   result.channels.fill(mean);
   double exit_norm = 0, kernel_norm = 0;

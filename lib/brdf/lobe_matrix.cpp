@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-std::size_t coefficient_count(int band_count) {
-  return static_cast<std::size_t>(sh::coefficient_count(band_count));
-}
-
 Direction direction(const Point& angles) {
   const double s = std::sin(angles.x);
   return {s * std::cos(angles.y), s * std::sin(angles.y), std::cos(angles.x)};
@@ -76,7 +72,7 @@ class EyeIntegrand {
         tolerance_(tolerance) {}
 
   std::size_t matrix_size() const {
-    return coefficient_count(row_band_count_) * coefficient_count(column_band_count_);
+    return sh::row_size(row_band_count_) * sh::row_size(column_band_count_);
   }
   std::size_t value_count() const { return matrix_size() + 2; }
   double light_error() const { return light_error_; }
@@ -97,7 +93,7 @@ class EyeIntegrand {
     const double sine = std::sin(angles.x);
     const LobeMoments light = lobe_moments(lobe_, eye, column_band_count_, tolerance_);
     const std::size_t column_count = light.values.size() - 1;
-    std::vector<double> row(coefficient_count(row_band_count_));
+    std::vector<double> row(sh::row_size(row_band_count_));
     sh::evaluate(row_band_count_, eye.x, eye.y, eye.z, row);
     double* value = values.data();
     for (double y : row) {
@@ -138,7 +134,7 @@ double quadrant_entry(const std::vector<double>& values, std::size_t column_coun
 }  // namespace
 
 LobeMoments lobe_moments(const Lobe& lobe, const Direction& eye, int band_count, double tolerance) {
-  const std::size_t count = coefficient_count(band_count);
+  const std::size_t count = sh::row_size(band_count);
   const bool half = lobe.is_isotropic() && eye.y == 0 && eye.x >= 0;
   std::vector<double> basis(count);
   const Integrand integrand = [&](std::span<const Point> points, std::span<double> values) {
@@ -186,8 +182,8 @@ LobeMatrix compute_lobe_matrix(const Lobe& lobe, int row_band_count, int column_
   const CubatureResult result = integrate(domain, std::ref(integrand), options);
 
   LobeMatrix matrix{row_band_count, column_band_count, {}, 0, 0, 0};
-  const std::size_t column_count = coefficient_count(column_band_count);
-  for (std::size_t i = 0; i < coefficient_count(row_band_count); ++i) {
+  const std::size_t column_count = sh::row_size(column_band_count);
+  for (std::size_t i = 0; i < sh::row_size(row_band_count); ++i) {
     for (std::size_t j = 0; j < column_count; ++j) {
       matrix.values.push_back(isotropic ? isotropic_entry(result.values, column_count, i, j)
                                         : quadrant_entry(result.values, column_count, i, j));

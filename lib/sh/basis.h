@@ -13,6 +13,10 @@ namespace prt::sh {
 constexpr int kMaxBandCount = 16;
 
 constexpr int coefficient_count(int band_count) { return band_count * band_count; }
+/// The same, as the length of a row.
+constexpr std::size_t row_size(int band_count) {
+  return static_cast<std::size_t>(coefficient_count(band_count));
+}
 constexpr int coefficient_index(int l, int m) { return l * (l + 1) + m; }
 
 /// All coefficient_count(band_count) values at one unit direction.

@@ -47,7 +47,7 @@ template <class Lanes>
   std::copy_n(batch.y + d, rest, y.data());
   std::copy_n(batch.z + d, rest, z.data());
   evaluate_block<Lanes>(batch.band_count, x.data(), y.data(), z.data(), values.data(), kBlock);
-  const auto value_count = static_cast<std::size_t>(coefficient_count(batch.band_count));
+  const auto value_count = row_size(batch.band_count);
   for (std::size_t i = 0; i < value_count; ++i) {
     std::copy_n(values.data() + i * kBlock, rest, batch.values + i * batch.stride + d);
   }

@@ -93,7 +93,7 @@ std::vector<double> hemisphere_gram(std::span<const int> rows, std::span<const i
   const int band_count = std::max(band_count_of(rows), band_count_of(columns));
   const GaussLegendre rule(band_count);
   std::vector<double> gram(rows.size() * columns.size());
-  std::vector<double> values(static_cast<std::size_t>(coefficient_count(band_count)));
+  std::vector<double> values(row_size(band_count));
   const auto value = [&](int function) {
     const int l = degree_of(function);
     return values[static_cast<std::size_t>(coefficient_index(l, std::abs(order_of(function))))];
@@ -131,7 +131,7 @@ std::vector<double> hemisphere_projection(HemisphereProjection kind, std::span<c
 
 HemisphereError hemisphere_error(HemisphereProjection kind, std::span<const int> functions,
                                  int signal_band_count) {
-  const auto signal_size = static_cast<std::size_t>(coefficient_count(signal_band_count));
+  const auto signal_size = row_size(signal_band_count);
   const int band_count = std::max(signal_band_count, band_count_of(functions));
   const std::vector<int> all = hemisphere_functions(coefficient_count(band_count));
   const std::vector<int> signal = hemisphere_functions(coefficient_count(signal_band_count));

@@ -26,7 +26,7 @@ Light tinted(std::span<const double> coefficients, int band_count, const Vec3& c
 }
 
 std::vector<double> basis_at(int band_count, const Vec3& direction) {
-  std::vector<double> values(static_cast<std::size_t>(coefficient_count(band_count)));
+  std::vector<double> values(row_size(band_count));
   evaluate(band_count, direction.x, direction.y, direction.z, values);
   return values;
 }
@@ -36,7 +36,7 @@ std::vector<double> basis_at(int band_count, const Vec3& direction) {
 Light::Light(int bands) : band_count(bands) {
   assert(bands >= 0 && bands <= kMaxBandCount);
   for (auto& channel : coefficients) {
-    channel.resize(static_cast<std::size_t>(coefficient_count(bands)));
+    channel.resize(row_size(bands));
   }
 }
 
@@ -56,7 +56,7 @@ Light with_band_count(const Light& light, int band_count) {
   Light result = light;
   result.band_count = band_count;
   for (auto& channel : result.coefficients) {
-    channel.resize(static_cast<std::size_t>(coefficient_count(band_count)));
+    channel.resize(row_size(band_count));
   }
   return result;
 }
@@ -67,7 +67,7 @@ Light constant_light(int band_count, const Vec3& radiance) {
 }
 
 Light disk_light(int band_count, const Vec3& direction, float radius, const Vec3& radiance) {
-  std::vector<double> coefficients(static_cast<std::size_t>(coefficient_count(band_count)));
+  std::vector<double> coefficients(row_size(band_count));
   turn_lobe(disk_lobe(band_count, radius), direction, coefficients);
   return tinted(coefficients, band_count, radiance);
 }

@@ -21,7 +21,7 @@ double wave(int m, double phi) { return m >= 0 ? std::cos(m * phi) : std::sin(-m
 class TripleIntegrals {
  public:
   explicit TripleIntegrals(int band_count) : rule_((3 * band_count) / 2 + 1) {
-    std::vector<double> values(static_cast<std::size_t>(coefficient_count(band_count)));
+    std::vector<double> values(row_size(band_count));
     for (double z : rule_.nodes) {
       evaluate(band_count, std::sqrt(1 - z * z), 0.0, z, values);
       polar_.push_back(values);
@@ -89,7 +89,7 @@ ProductTable::ProductTable(int band_count) : band_count_(band_count) {
 
 void ProductTable::multiply(std::span<const float> a, std::span<const float> b,
                             std::span<float> product) const {
-  const auto count = static_cast<std::size_t>(coefficient_count(band_count_));
+  const auto count = row_size(band_count_);
   assert(a.size() >= count && b.size() >= count && product.size() >= count);
   std::fill_n(product.begin(), count, 0.0f);
   for (const Entry& entry : entries_) {
@@ -99,7 +99,7 @@ void ProductTable::multiply(std::span<const float> a, std::span<const float> b,
 }
 
 void ProductTable::matrix(std::span<const float> a, std::span<float> values) const {
-  const auto count = static_cast<std::size_t>(coefficient_count(band_count_));
+  const auto count = row_size(band_count_);
   assert(a.size() >= count && values.size() >= count * count);
   std::fill_n(values.begin(), count * count, 0.0f);
   for (const Entry& entry : entries_) {

@@ -111,7 +111,7 @@ Light project_environment(int band_count, int width, int height, const float* rg
   const std::vector<double> longitudes = longitude_integrals(band_count, width);
   const LatitudeIntegrals latitudes(band_count, height);
   const auto row_count = static_cast<std::size_t>(height);
-  const auto value_count = static_cast<std::size_t>(coefficient_count(band_count));
+  const auto value_count = row_size(band_count);
   Sums zero;
   zero.fill(std::vector<double>(value_count));
   std::vector<Sums> blocks(block_count(row_count, kRowsPerBlock), zero);

@@ -96,8 +96,8 @@ double Rotation::at(int l, int m, int n) const {
 }
 
 void Rotation::apply(std::span<const float> from, std::span<float> to) const {
-  assert(from.size() >= static_cast<std::size_t>(coefficient_count(band_count_)));
-  assert(to.size() >= static_cast<std::size_t>(coefficient_count(band_count_)));
+  assert(from.size() >= row_size(band_count_));
+  assert(to.size() >= row_size(band_count_));
   for (int l = 0; l < band_count_; ++l) {
     for (int m = -l; m <= l; ++m) {
       double sum = 0;

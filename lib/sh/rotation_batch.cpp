@@ -46,7 +46,7 @@ template <class Lanes>
   }
   if (v == batch.count) return;
   std::array<float, kBlock * coefficient_count(kMaxBandCount)> from{}, to;
-  const auto row_count = static_cast<std::size_t>(coefficient_count(batch.band_count));
+  const auto row_count = row_size(batch.band_count);
   for (std::size_t i = 0; i < row_count; ++i) {
     std::copy_n(batch.from + i * batch.stride + v, batch.count - v, from.data() + i * kBlock);
   }

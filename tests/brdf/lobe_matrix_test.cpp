@@ -40,7 +40,7 @@ std::vector<Node> hemisphere_nodes(int polar_count, int azimuth_count) {
 }
 
 std::vector<double> basis_at(int band_count, const Direction& w) {
-  std::vector<double> values(static_cast<std::size_t>(sh::coefficient_count(band_count)));
+  std::vector<double> values(sh::row_size(band_count));
   sh::evaluate(band_count, w.x, w.y, w.z, values);
   return values;
 }

@@ -28,7 +28,7 @@ TEST(ShBasis, FirstBandsFollowTheConvention) {
 
 TEST(ShBasis, IsOrthonormal) {
   for (int band_count : {10, kMaxBandCount}) {
-    const auto count = static_cast<std::size_t>(coefficient_count(band_count));
+    const auto count = row_size(band_count);
     std::vector<double> products(count * count), values(count);
     for (const SphereNode& node : sphere_quadrature(2 * (band_count - 1))) {
       evaluate(band_count, node.x, node.y, node.z, values);
@@ -79,7 +79,7 @@ TEST(ShBasis, AgreesWithSciPy) {
   ASSERT_EQ(band_count, kMaxBandCount);
   const nlohmann::json& cases = data.at("cases");
   ASSERT_GE(cases.size(), 20u);
-  std::vector<double> values(static_cast<std::size_t>(coefficient_count(band_count)));
+  std::vector<double> values(row_size(band_count));
   for (const nlohmann::json& one : cases) {
     const std::vector<double> d = one.at("direction"), expected = one.at("values");
     ASSERT_EQ(expected.size(), values.size());
@@ -99,7 +99,7 @@ TEST(ShBasis, BatchAgreesWithScalarForAnyCountAndLeavesTheRestAlone) {
     x[i] = d.x, y[i] = d.y, z[i] = d.z;
   }
   for (int band_count = 1; band_count <= kMaxBandCount; ++band_count) {
-    const auto value_count = static_cast<std::size_t>(coefficient_count(band_count));
+    const auto value_count = row_size(band_count);
     for (std::size_t count : {0, 1, 7, 15, 16, 17, 32, 67}) {
       std::vector<float> values(value_count * stride, 1234);
       evaluate_batch(band_count, x.data(), y.data(), z.data(), count, values.data(), stride);

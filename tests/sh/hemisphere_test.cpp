@@ -212,7 +212,7 @@ TEST(ShHemisphere, LeastSquaresResidualIsOrthogonal) {
 // With 16 bands A is singular in double precision (eigenvalues below 1e-20); P must stay bounded
 // and still be a projection of what it keeps: P A P = P.
 TEST(ShHemisphere, InversionIsBoundedNearSingularity) {
-  const auto count = static_cast<std::size_t>(coefficient_count(16));
+  const auto count = row_size(16);
   const std::vector<int> functions = hemisphere_functions(256);
   EXPECT_LT(eigenvalues(256).back(), 1e-15);
   std::vector<double> p = hemisphere_projection(Kind::least_squares, functions);

@@ -11,7 +11,7 @@ namespace {
 TEST(ShProduct, IsTheProjectionOfTheProduct) {
   Pcg32 random(21);
   for (int band_count : {1, 2, 5, 8}) {
-    const auto count = static_cast<std::size_t>(coefficient_count(band_count));
+    const auto count = row_size(band_count);
     const std::vector<float> a = random_coefficients(count, random);
     const std::vector<float> b = random_coefficients(count, random);
     std::vector<double> expected(count), values(count);

@@ -21,7 +21,7 @@ std::vector<float> random_map(int width, int height) {
 
 // Plain and slow: fine Gauss-Legendre squares inside each texel.
 std::vector<double> project_plainly(int band_count, int width, int height, const float* rgb) {
-  const auto count = static_cast<std::size_t>(coefficient_count(band_count));
+  const auto count = row_size(band_count);
   std::vector<double> sums(3 * count), values(count);
   const GaussLegendre rule(16);
   for (int y = 0; y < height; ++y) {

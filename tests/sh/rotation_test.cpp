@@ -97,7 +97,7 @@ TEST(ShRotation, BatchAgreesWithSingleForAnyCountAndLeavesTheRestAlone) {
   const std::size_t stride = 50;
   for (int band_count : {1, 2, 3, 5, 10, kMaxBandCount}) {
     const Rotation rotation(band_count, to_from);
-    const auto size = static_cast<std::size_t>(coefficient_count(band_count));
+    const auto size = row_size(band_count);
     const std::vector<float> from = random_coefficients(size * stride, random);
     for (std::size_t count : {0, 1, 15, 16, 17, 47}) {
       std::vector<float> to(size * stride, 1234), one(size), expected(size);
