@@ -1,10 +1,10 @@
 // Times the stages of an encoder, one after the other.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "core/stopwatch.h"
 #include "cpca/encoder.h"
 
 namespace prt::cpca {
@@ -15,14 +15,13 @@ class StageClock {
 
   /// What ran since the last call, or since the clock was made, was `name`.
   void finish(const std::string& name) {
-    const auto now = std::chrono::steady_clock::now();
-    stages_.push_back({name, std::chrono::duration<double>(now - last_).count()});
-    last_ = now;
+    stages_.push_back({name, watch_.seconds()});
+    watch_ = {};
   }
 
  private:
   std::vector<Stage>& stages_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
 };
 
 }  // namespace prt::cpca
