@@ -65,7 +65,7 @@ void add_geometry_options(CLI::App& app, Arguments& arguments) {
   const char* group = "Geometry";
   app.add_option("--max-edge", prepare.max_edge,
                  "Split edges longer than this many metres; 0: none")
-      ->check(CLI::NonNegativeNumber)
+      ->check(prt::cli::at_least_zero())
       ->group(group);
   app.add_option("--max-triangles", prepare.max_triangles,
                  "Fail when splitting makes more, per mesh")
@@ -80,7 +80,7 @@ void add_geometry_options(CLI::App& app, Arguments& arguments) {
                "Compute normals even where the file has them")
       ->group(group);
   app.add_option("--unit", arguments.options.metres_per_unit, "Metres per unit of a mesh file")
-      ->check(CLI::PositiveNumber)
+      ->check(prt::cli::above_zero())
       ->group(group);
   app.add_option("--up", arguments.up, "Axis that points up in a mesh file")
       ->check(CLI::IsMember({"y", "z"}))

@@ -44,7 +44,7 @@ void add_options(CLI::App& app, Options& options) {
       ->group("Comparison");
   app.add_option("--heatmap-max", options.heatmap_max,
                  "Radiance at the red end of its scale; 0: the 99th percentile")
-      ->check(CLI::NonNegativeNumber)
+      ->check(cli::at_least_zero())
       ->group("Comparison");
 }
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <new>
 
@@ -37,6 +40,27 @@ void check_finite(const CLI::Option& option) {
   }
 }
 
+/// CLI11 2.1 takes -1 for the largest unsigned number, and so it does larger ones.
+void check_unsigned(const CLI::Option& option) {
+  for (const std::string& value : option.results()) {
+    errno = 0;
+    std::strtoull(value.c_str(), nullptr, 0);
+    if (!value.starts_with('-') && errno == 0) continue;
+    throw Error(ErrorKind::usage, option.get_name() + ": out of range",
+                {.found = value, .expected = "0 to 18446744073709551615"});
+  }
+}
+
+CLI::Validator number_check(const char* type, bool (*holds)(double), const char* expected) {
+  return CLI::Validator(
+      [holds, expected](const std::string& value) {
+        double number = 0.0;
+        const bool good = CLI::detail::lexical_cast(value, number) && holds(number);
+        return good ? std::string() : fmt::format("expected {}, found {}", expected, value);
+      },
+      type);
+}
+
 /// Results that do not arrive (a full disk, a closed pipe) are a failure.
 void flush_results() {
   std::cout.flush();
@@ -46,6 +70,16 @@ void flush_results() {
 }
 
 }  // namespace
+
+CLI::Validator at_least_zero() {
+  return number_check(
+      "NONNEGATIVE", [](double x) { return x >= 0.0; }, "a number from 0 up");
+}
+
+CLI::Validator above_zero() {
+  return number_check(
+      "POSITIVE", [](double x) { return x > 0.0; }, "a number above 0");
+}
 
 Tool::Tool(std::string name, std::string description, std::string example)
     : name_(std::move(name)), app_(std::move(description), name_) {
@@ -96,18 +130,16 @@ void Tool::check_values() const {
   for (const CLI::Option* option : app_.get_options()) {
     const CLI::results_t& values = option->results();
     const auto count = static_cast<std::size_t>(option->get_items_expected_min());
+    if (std::ranges::count(values, "") > 0) {
+      throw Error(ErrorKind::usage, option->get_name() + ": empty");
+    }
     if (count > 1 && values.size() % count != 0) {
       throw Error(ErrorKind::usage, option->get_name() + ": wrong count",
                   {.found = fmt::format("{}", fmt::join(values, ",")),
                    .expected = fmt::format("{} values", count)});
     }
     if (option->get_type_name().starts_with("FLOAT")) check_finite(*option);
-    if (!option->get_type_name().starts_with("UINT")) continue;
-    for (const std::string& value : values) {  // CLI11 2.1 takes -1 for the largest number
-      if (value.starts_with('-')) {
-        throw Error(ErrorKind::usage, option->get_name() + ": negative", {.found = value});
-      }
-    }
+    if (option->get_type_name().starts_with("UINT")) check_unsigned(*option);
   }
 }
 

@@ -24,6 +24,10 @@ struct CommonOptions {
   std::filesystem::path report;  ///< empty: none
 };
 
+/// Checks of an option's number; those of CLI11 name the largest number of all in their message.
+CLI::Validator at_least_zero();
+CLI::Validator above_zero();
+
 class Tool {
  public:
   /// `example` is one real command, shown at the end of --help.

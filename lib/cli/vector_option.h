@@ -1,4 +1,4 @@
-// Options of three numbers: --name X,Y,Z.
+// Options of several numbers: --name X,Y,Z and --size WIDTHxHEIGHT.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -23,5 +23,8 @@ void add_vector(CLI::App& app, const char* name, Vector& value, const std::strin
       ->expected(3)
       ->type_name("X,Y,Z");
 }
+
+/// --size, in pixels, each from 1 to 16384.
+void add_size(CLI::App& app, int& width, int& height, const std::string& description);
 
 }  // namespace prt::cli

@@ -93,6 +93,10 @@ void check_structure(std::string_view text, const std::string& file) {
 
 Json parse_json(std::string_view text, const std::string& file) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || text[first] != '{') {
+    throw_bad_input("not a glTF file", {.file = file});
+  }
   check_structure(text, file);
   try {
     return Json::parse(text);

@@ -12,7 +12,7 @@ class Options(ToolTest):
         super().setUp()
         self.source = self.write("quad.obj", QUAD_OBJ)
         self.quad = self.folder / "quad.glb"
-        self.done("prt-import", self.source, "-o", self.quad)
+        self.made_once(lambda: self.done("prt-import", self.source, "-o", self.quad))
 
     def wrong(self, pattern, tool, *arguments):
         """A usage error, which starts with the tool's name."""
@@ -54,6 +54,24 @@ class Options(ToolTest):
         self.wrong("--base-color", "prt-import", self.source, "-o", self.folder / "a.glb",
                    "--base-color", "nan,1,1")
         self.wrong("finite", "prt-light", "--constant", "nan,1,1", "-o", self.folder / "a.json")
+
+    def test_numbers_out_of_range(self):
+        out = ("-o", self.folder / "a.glb")
+        for value in ("-1", "18446744073709551616"):
+            self.wrong("--seed: out of range", "prt-import", self.source, *out, "--seed", value)
+        self.wrong("--max-edge: expected a number from 0 up, found -1", "prt-import", self.source,
+                   *out, "--max-edge", -1)
+        self.wrong("--unit: expected a number above 0, found 0", "prt-import", self.source, *out,
+                   "--unit", 0)
+        for size in ("0x5", "100x20000", "100000x5", "7"):
+            self.wrong("WIDTHxHEIGHT, each from 1 to 16384", "prt-render", self.quad, "-o",
+                       self.folder / "a.png", "--size", size)
+
+    def test_empty_values(self):
+        self.wrong("--output: empty", "prt-import", self.source, "-o", "")
+        self.wrong("input: empty", "prt-import", "", "-o", self.folder / "a.glb")
+        self.wrong("--report: empty", "prt-import", self.source, "-o", self.folder / "a.glb",
+                   "--report", "")
 
     def test_missing_arguments(self):
         self.wrong("input is required", "prt-import")

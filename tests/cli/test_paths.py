@@ -14,7 +14,7 @@ class Paths(ToolTest):
         self.source = self.write("quad.obj", QUAD_OBJ)
         self.quad = self.folder / "quad.glb"
         self.light = self.folder / "light.json"
-        self.done("prt-import", self.source, "-o", self.quad)
+        self.made_once(lambda: self.done("prt-import", self.source, "-o", self.quad))
 
     def test_every_tool_names_a_missing_input(self):
         none, out = self.folder / "none.glb", self.folder / "out"
@@ -84,7 +84,7 @@ class Paths(ToolTest):
         self.refused(WRONG_USAGE, "count", "prt-import", self.source, *out, "--base-color", "1,1")
         self.refused(WRONG_USAGE, "X,Y,Z", "prt-render", self.quad, "-o", self.folder / "x.png",
                      "--eye", "1,2")
-        self.refused(WRONG_USAGE, "negative", "prt-import", self.source, *out,
+        self.refused(WRONG_USAGE, "out of range", "prt-import", self.source, *out,
                      "--max-input-bytes", -1)
 
 
