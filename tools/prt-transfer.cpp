@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "cli/checkpoint.h"
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "core/error.h"
@@ -106,7 +107,8 @@ transfer::MatrixOptions matrix_options(const Options& options) {
           .bounce_ray_count = from.bounce_ray_count,
           .shadowed = from.shadowed,
           .channels = from.channels,
-          .seed = from.seed};
+          .seed = from.seed,
+          .checkpoint = from.checkpoint};
 }
 
 void bake(Options& options, const cli::CommonOptions& common, Report& report) {
@@ -115,12 +117,14 @@ void bake(Options& options, const cli::CommonOptions& common, Report& report) {
   const mesh::Scene scene = load_scene(options.input, report);
   options.diffuse.shadowed = !options.unshadowed;
   options.diffuse.seed = common.seed;
+  options.diffuse.checkpoint = cli::checkpoint_beside(options.output);
   transfer::DiffuseStats stats;
   const signal::TransferSignal signal =
       options.mode == "matrix"
           ? transfer::bake_matrices(scene, matrix_options(options), options.output,
                                     common.no_clobber, stats, report)
           : bake_diffuse(options, scene, common.no_clobber, stats, report);
+  remove_checkpoint(options.diffuse.checkpoint.path);
   transfer::report_figures(report, stats, signal);
   report.add_output(options.output);
 }

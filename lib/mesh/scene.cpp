@@ -187,8 +187,12 @@ std::string scene_hash(const Scene& scene) {
   }
   for (const Material& material : scene.materials) {
     hasher.add(&material.base_color, sizeof material.base_color);
-    const int texture[] = {material.base_color_image, static_cast<int>(material.wrap_s),
-                           static_cast<int>(material.wrap_t)};
+    const int texture[] = {material.base_color_image,
+                           static_cast<int>(material.wrap_s),
+                           static_cast<int>(material.wrap_t),
+                           material.metallic_roughness_image,
+                           static_cast<int>(material.metallic_roughness_wrap_s),
+                           static_cast<int>(material.metallic_roughness_wrap_t)};
     hasher.add(texture, sizeof texture);
   }
   for (const image::Image& image : scene.images) {

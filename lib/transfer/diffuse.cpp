@@ -16,6 +16,7 @@
 #include "transfer/clamped_cosine.h"
 #include "transfer/limits.h"
 #include "transfer/reflection.h"
+#include "transfer/resume.h"
 
 namespace prt::transfer {
 
@@ -27,9 +28,16 @@ void check_options(const DiffuseOptions& options) {
   check_bounces(options.bounce_count, options.bounce_ray_count, options.shadowed);
 }
 
+/// All that decides the values, and bounce_bytes, which decides how bounces are divided.
+std::string checkpoint_key(const mesh::Scene& scene, const DiffuseOptions& o) {
+  return fmt::format("diffuse {} {} {} {} {} {} {} {} {} {}", mesh::scene_hash(scene), o.band_count,
+                     o.ray_count, o.bounce_count, o.bounce_ray_count, o.shadowed,
+                     static_cast<int>(o.channels), o.seed, o.closed_form, o.bounce_bytes);
+}
+
 /// Basis functions at all directions, a padded row a direction.
 std::vector<float> basis_rows(int band_count, const Directions& directions) {
-  const auto count = static_cast<std::size_t>(sh::coefficient_count(band_count));
+  const auto count = sh::row_size(band_count);
   std::vector<float> rows(directions.count() * padded(count));
   for (std::size_t d = 0; d < directions.count(); ++d) {
     sh::evaluate(band_count, directions[d], {&rows[d * padded(count)], count});
@@ -46,7 +54,8 @@ class DiffuseBake {
         stats_(stats),
         index_(scene),
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
-        coefficient_count_(static_cast<std::size_t>(sh::coefficient_count(options.band_count))) {
+        coefficient_count_(sh::row_size(options.band_count)),
+        checkpoint_(options.checkpoint, checkpoint_key(scene, options)) {
     stats_.build_seconds = watch_.seconds();
     signal_.band_count = options.band_count;
     signal_.channel_count = choose_channel_count(scene, options.channels, options.bounce_count > 0);
@@ -97,28 +106,38 @@ class DiffuseBake {
   void direct_pass() {
     const Stopwatch watch;
     const std::vector<float> basis = basis_rows(options_.band_count, directions_);
+    const TracedRows traced{signal_.values.data(), row_size_, coefficient_count_, buried_.data()};
+    const std::vector<std::uint8_t> restored = restore_traced(checkpoint_, index_, traced, stats_);
     std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
     Progress progress("shadows",
                       index_.vertex_count() * static_cast<std::size_t>(options_.ray_count), "rays");
     parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
-      Hemisphere hemisphere(index_, directions_);
-      std::vector<float> sum(padded(coefficient_count_));
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t vertex = index_.vertex_order()[i];
-        hemisphere.trace(vertex);
-        store_direct(vertex, hemisphere, basis, sum);
-        buried_[vertex] = is_buried(hemisphere, index_.magnitude(vertex));
+      if (!restored[begin / kVertexBlock]) {
+        rays[begin / kVertexBlock] = trace_block(begin, end, basis);
+        store_traced(checkpoint_, index_, traced, begin);
       }
-      rays[begin / kVertexBlock] = hemisphere.rays_cast();
       progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
     });
+    for (std::size_t v = 0; v < index_.vertex_count(); ++v) copy_to_channels(v);
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
   }
 
-  void store_direct(std::size_t vertex, Hemisphere& hemisphere, const std::vector<float>& basis,
-                    std::vector<float>& sum) {
+  std::uint64_t trace_block(std::size_t begin, std::size_t end, const std::vector<float>& basis) {
+    Hemisphere hemisphere(index_, directions_);
+    std::vector<float> sum(padded(coefficient_count_));
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t vertex = index_.vertex_order()[i];
+      hemisphere.trace(vertex);
+      find_irradiance(vertex, hemisphere, basis, sum);
+      buried_[vertex] = is_buried(hemisphere, index_.magnitude(vertex));
+    }
+    return hemisphere.rays_cast();
+  }
+
+  void find_irradiance(std::size_t vertex, Hemisphere& hemisphere, const std::vector<float>& basis,
+                       std::vector<float>& sum) {
     const bool closed_form = options_.closed_form;
     std::fill(sum.begin(), sum.end(), 0.0f);
     add_weighted_rows(closed_form ? hemisphere.blocked() : hemisphere.visible(), basis.data(),
@@ -127,7 +146,6 @@ class DiffuseBake {
     if (closed_form) clamped_cosine(options_.band_count, index_.normal(vertex), irradiance);
     const float weight = closed_form ? -direction_weight() : direction_weight();
     for (std::size_t j = 0; j < coefficient_count_; ++j) irradiance[j] += weight * sum[j];
-    copy_to_channels(vertex);
   }
 
   void copy_to_channels(std::size_t vertex) {
@@ -169,7 +187,7 @@ class DiffuseBake {
     }
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t fit = options_.bounce_bytes /
-                            (2 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
+                            (3 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
     const std::size_t columns =
         fit > 0 ? std::min(fit * kRowPadding, padded(coefficient_count_)) : 1;
     Progress progress("bounces",
@@ -182,26 +200,40 @@ class DiffuseBake {
     stats_.bounce_seconds = watch.seconds();
   }
 
+  /// One state holds the sum of the bounces so far, the last bounce, and their number: what the
+  /// checkpoint keeps, at the end and, in long computations, now and then before.
   void bounce_columns(const BuriedRepair& repair, const Reflection& reflection, std::size_t first,
                       std::size_t columns, Progress& progress) {
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t used = std::min(columns, coefficient_count_ - first);
-    std::vector<float> field(index_.vertex_count() * channels * columns), next(field.size());
+    const std::size_t size = index_.vertex_count() * channels * columns;
+    std::vector<float> state(2 * size + 1), next(size);
+    float *sum = state.data(), *field = sum + size, &done = state.back();
     const auto for_each_segment = [&](const auto& body) {
       for (std::size_t i = 0; i < index_.vertex_count() * channels; ++i) {
-        body(&signal_.values[i * coefficient_count_ + first], &field[i * columns]);
+        body(&signal_.values[i * coefficient_count_ + first], &sum[i * columns]);
       }
     };
-    for_each_segment([&](const float* value, float* f) { std::copy_n(value, used, f); });
-    for (int b = 0; b < options_.bounce_count; ++b) {
-      stats_.rays_cast += reflection.gather(field.data(), columns, next.data());
+    const Checkpoint::Name name{kBounceStage, static_cast<std::uint32_t>(first)};
+    if (!checkpoint_.restore(name, std::span(state))) {
+      for_each_segment([&](const float* value, float* s) { std::copy_n(value, used, s); });
+      std::copy_n(sum, size, field);
+    }
+    progress.advance(static_cast<std::size_t>(done) * index_.vertex_count());
+    Stopwatch since_stored;
+    while (done < static_cast<float>(options_.bounce_count)) {
+      stats_.rays_cast += reflection.gather(field, columns, next.data());
       repair.apply(next.data(), channels * columns);
-      std::swap(field, next);
-      for_each_segment([&](float* value, const float* f) {
-        for (std::size_t j = 0; j < used; ++j) value[j] += f[j];
-      });
+      for (std::size_t i = 0; i < size; ++i) sum[i] += field[i] = next[i];
+      ++done;
+      if (since_stored.seconds() >= options_.checkpoint.after_seconds ||
+          done == static_cast<float>(options_.bounce_count)) {
+        checkpoint_.store(name, std::span<const float>(state));
+        since_stored = {};
+      }
       progress.advance(index_.vertex_count());
     }
+    for_each_segment([&](float* value, const float* s) { std::copy_n(s, used, value); });
   }
 
   void multiply_albedo() {
@@ -238,6 +270,7 @@ class DiffuseBake {
   SceneIndex index_;
   Directions directions_;
   std::size_t coefficient_count_, row_size_ = 0;
+  Checkpoint checkpoint_;
   signal::TransferSignal signal_;
   std::vector<std::uint8_t> buried_;
 };

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "core/checkpoint.h"
 #include "mesh/scene.h"
 #include "signal/transfer_signal.h"
 #include "transfer/channels.h"
@@ -41,7 +42,8 @@ struct DiffuseOptions {
   /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
   bool closed_form = true;
   std::size_t hit_bytes = std::size_t{320} << 20;    ///< for hits kept between bounces, at most
-  std::size_t bounce_bytes = std::size_t{64} << 20;  ///< for the two fields of a bounce
+  std::size_t bounce_bytes = std::size_t{96} << 20;  ///< for the three fields of a bounce
+  CheckpointOptions checkpoint{};  ///< where to keep what is done, for a run that continues it
 };
 
 struct DiffuseStats {
@@ -54,7 +56,8 @@ struct DiffuseStats {
   std::vector<Primitive> primitives;
   std::size_t buried_vertex_count = 0;      ///< detected
   std::size_t unrepaired_vertex_count = 0;  ///< of these, connected to no vertex that is not
-  std::uint64_t rays_cast = 0;              ///< occlusion and closest hit
+  std::size_t resumed_vertex_count = 0;     ///< traced by an interrupted run before this one
+  std::uint64_t rays_cast = 0;              ///< occlusion and closest hit, in this run
   double rays_per_second = 0.0;             ///< of the shadow pass
   double build_seconds = 0.0;               ///< the ray engine's tree, the order of vertices
   double trace_seconds = 0.0;               ///< the shadow pass

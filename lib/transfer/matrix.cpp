@@ -94,9 +94,10 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
   const Stopwatch watch;
   index_ = std::make_unique<SceneIndex>(scene);
   stats_.build_seconds = watch.seconds();
-  visibility_ = compute_visibility(
-      *index_, {2 * options.band_count - 1, options.ray_count, options.shadowed, options.seed},
-      stats_);
+  visibility_ = compute_visibility(*index_,
+                                   {2 * options.band_count - 1, options.ray_count, options.shadowed,
+                                    options.seed, options.checkpoint},
+                                   stats_);
   if (options.bounce_count > 0) {
     bounce(options);
   } else {

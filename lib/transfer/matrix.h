@@ -49,6 +49,7 @@ struct MatrixOptions {
   /// Where the fields of bounces are: half of the matrices' size, for more than one bounce all of
   /// it.
   std::filesystem::path scratch_folder = std::filesystem::temp_directory_path();
+  CheckpointOptions checkpoint{};  ///< where to keep what shadow rays found
 };
 
 class MatrixTransfer {

@@ -1,27 +1,31 @@
 #include "transfer/matrix_visibility.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/stopwatch.h"
 #include "linalg/product.h"
 #include "sh/basis.h"
 #include "sh/quadrature.h"
 #include "sh/zonal.h"
 #include "transfer/buried.h"
 #include "transfer/reflection.h"
+#include "transfer/resume.h"
 
 namespace prt::transfer {
 
 namespace {
 
-std::size_t size_of(int band_count) {
-  return static_cast<std::size_t>(sh::coefficient_count(band_count));
+std::string checkpoint_key(const mesh::Scene& scene, const VisibilityOptions& o) {
+  return fmt::format("visibility {} {} {} {} {}", mesh::scene_hash(scene), o.band_count,
+                     o.ray_count, o.shadowed, o.seed);
 }
 
 class VisibilityPass {
@@ -31,27 +35,32 @@ class VisibilityPass {
         options_(options),
         stats_(stats),
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
-        count_(size_of(options.band_count)),
+        count_(sh::row_size(options.band_count)),
         lobe_(sh::disk_lobe(options.band_count, std::numbers::pi / 2)),
         rows_(index.vertex_count() * count_),
-        buried_(index.vertex_count()) {}
+        buried_(index.vertex_count()),
+        checkpoint_(options.checkpoint, checkpoint_key(index.scene(), options)) {}
 
   Visibility run() {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::vector<float> basis = options_.shadowed ? basis_rows() : std::vector<float>();
+    const TracedRows traced{rows_.data(), count_, count_, buried_.data()};
+    const std::vector<std::uint8_t> restored = restore_traced(checkpoint_, index_, traced, stats_);
     std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
     Progress progress("visibility",
                       index_.vertex_count() * static_cast<std::size_t>(options_.ray_count), "rays");
     parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
-      rays[begin / kVertexBlock] = run_block(begin, end, basis);
+      if (!restored[begin / kVertexBlock]) {
+        rays[begin / kVertexBlock] = run_block(begin, end, basis);
+        store_traced(checkpoint_, index_, traced, begin);
+      }
       progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
     });
     const BuriedRepair repair(index_, buried_);
     repair.apply(rows_.data(), count_);
     fill_stats(repair);
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
-    stats_.trace_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
     return {std::move(rows_), repair.stand_ins(index_.vertex_count())};
   }
@@ -111,6 +120,7 @@ class VisibilityPass {
   const std::vector<double> lobe_;  // the hemisphere about +Z
   std::vector<float> rows_;
   std::vector<std::uint8_t> buried_;
+  Checkpoint checkpoint_;
 };
 
 }  // namespace
@@ -124,7 +134,7 @@ Visibility compute_visibility(const SceneIndex& index, const VisibilityOptions& 
 // triple product is: Gauss in z, equal steps in the azimuth.
 std::vector<float> triple_products(int band_count) {
   assert(band_count >= 1 && band_count <= kMaxMatrixBandCount);
-  const std::size_t n = size_of(band_count), m = size_of(2 * band_count - 1);
+  const std::size_t n = sh::row_size(band_count), m = sh::row_size(2 * band_count - 1);
   const sh::GaussLegendre rule(2 * band_count - 1);
   const int step_count = 4 * band_count - 3;
   const std::size_t node_count = rule.nodes.size() * static_cast<std::size_t>(step_count);

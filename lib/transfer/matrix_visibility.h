@@ -17,6 +17,7 @@ struct VisibilityOptions {
   int ray_count = 2048;  ///< per vertex, over its hemisphere (on average)
   bool shadowed = true;  ///< false: no rays, the hemisphere alone
   std::uint64_t seed = 1;
+  CheckpointOptions checkpoint{};  ///< where to keep what is done, for a run that continues it
 };
 
 struct Visibility {

@@ -11,17 +11,6 @@ using Vec3d = Imath::V3d;
 /// Inside of the lower half of a sphere.
 TriangleMesh bowl(int level) { return turned_inside_out(sphere(level, true)); }
 
-/// A room without its front, floor, back, roof and walls seen from inside; the walls are coloured.
-mesh::Scene coloured_box(std::uint32_t n) {
-  mesh::Scene scene;
-  add(scene, grid({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, n), Vec3(0.75f));
-  add(scene, grid({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, n), Vec3(0.75f));
-  add(scene, grid({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, n), Vec3(0.75f));
-  add(scene, grid({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, n), Vec3(0.8f, 0.1f, 0.1f));
-  add(scene, grid({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, n), Vec3(0.1f, 0.7f, 0.1f));
-  return scene;
-}
-
 TEST(Bounce, WhiteBowlShowsConstantLightEverywhere) {
   const mesh::Scene scene = scene_of(bowl(3));
   const auto direct = compute(scene, {.ray_count = 512});

@@ -138,4 +138,15 @@ inline double largest_difference(const signal::TransferSignal& a, const signal::
   return largest;
 }
 
+/// A room without its front, floor, back, roof and walls seen from inside; the walls are coloured.
+inline mesh::Scene coloured_box(std::uint32_t n) {
+  mesh::Scene scene;
+  add(scene, grid({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, n), Vec3(0.75f));
+  add(scene, grid({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, n), Vec3(0.75f));
+  add(scene, grid({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, n), Vec3(0.75f));
+  add(scene, grid({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, n), Vec3(0.8f, 0.1f, 0.1f));
+  add(scene, grid({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, n), Vec3(0.1f, 0.7f, 0.1f));
+  return scene;
+}
+
 }  // namespace prt::transfer

@@ -1,0 +1,60 @@
+#include "transfer/resume.h"
+
+#include <algorithm>
+
+#include "core/log.h"
+#include "core/parallel.h"
+#include "transfer/reflection.h"
+
+namespace prt::transfer {
+
+namespace {
+
+std::span<const std::uint32_t> block_vertices(const SceneIndex& index, std::size_t begin) {
+  return std::span(index.vertex_order())
+      .subspan(begin, std::min(kVertexBlock, index.vertex_count() - begin));
+}
+
+Checkpoint::Name block_name(std::size_t begin) {
+  return {kTraceStage, static_cast<std::uint32_t>(begin / kVertexBlock)};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> restore_traced(const Checkpoint& checkpoint, const SceneIndex& index,
+                                         const TracedRows& traced, DiffuseStats& stats) {
+  std::vector<std::uint8_t> restored(block_count(index.vertex_count(), kVertexBlock));
+  for (std::size_t block = 0; block < restored.size(); ++block) {
+    const std::size_t begin = block * kVertexBlock;
+    const auto vertices = block_vertices(index, begin);
+    std::vector<float> values(vertices.size() * (traced.count + 1));
+    if (!checkpoint.restore(block_name(begin), std::span(values))) continue;
+    const float* from = values.data();
+    for (const std::uint32_t vertex : vertices) {
+      std::copy_n(from, traced.count, traced.rows + vertex * traced.stride);
+      traced.buried[vertex] = from[traced.count] != 0.0f;
+      from += traced.count + 1;
+    }
+    restored[block] = 1;
+    stats.resumed_vertex_count += vertices.size();
+  }
+  if (stats.resumed_vertex_count > 0) {
+    log::info("continuing an interrupted run, which traced {:.0f}% of the vertices",
+              100.0 * static_cast<double>(stats.resumed_vertex_count) /
+                  static_cast<double>(index.vertex_count()));
+  }
+  return restored;
+}
+
+void store_traced(Checkpoint& checkpoint, const SceneIndex& index, const TracedRows& traced,
+                  std::size_t begin) {
+  std::vector<float> values;
+  for (const std::uint32_t vertex : block_vertices(index, begin)) {
+    const float* row = traced.rows + vertex * traced.stride;
+    values.insert(values.end(), row, row + traced.count);
+    values.push_back(traced.buried[vertex]);
+  }
+  checkpoint.store(block_name(begin), std::span<const float>(values));
+}
+
+}  // namespace prt::transfer
