@@ -4,6 +4,7 @@
 #include <string>
 
 #include "brdf/brdf.h"
+#include "cli/checkpoint.h"
 #include "cli/choice_option.h"
 #include "cli/paths.h"
 #include "cli/tool.h"
@@ -55,16 +56,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees");
 
   app.option_defaults()->group("Picture");
-  app.add_option_function<std::string>(
-         "--size",
-         [&](const std::string& size) {
-           char end = 0;
-           if (std::sscanf(size.c_str(), "%5dx%5d%c", &options.width, &options.height, &end) != 2 ||
-               options.width < 1 || options.height < 1)
-             throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT, found " + size);
-         },
-         "Width and height in pixels [1024x1024]")
-      ->type_name("WxH");
+  prt::cli::add_size(app, options.width, options.height, "Width and height in pixels [1024x1024]");
   app.add_option("--exposure", options.exposure, "Stops, for .png");
   prt::cli::add_choice(app, "--background", options.background, kBackgrounds,
                        "Behind the model [environment]");
@@ -144,6 +136,7 @@ int main(int argc, char** argv) {
     reference_options.picture = options.picture;
     reference_options.box_filter = options.sample_count > 1;
     reference_options.seed = tool.common().seed;
+    reference_options.checkpoint = prt::cli::checkpoint_beside(picture.output);
     prt::runtime::render_reference(reference_options, report);
   });
 }

@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "core/stopwatch.h"
 #include "ray/engine.h"
+#include "reference/kept_tiles.h"
 #include "reference/surface.h"
 #include "reference/tile.h"
 
@@ -47,16 +48,20 @@ Result trace(const mesh::Scene& scene, const camera::Camera& camera,
   centred.eye -= surfaces.centre();
   centred.target -= surfaces.centre();
   const Job job{surfaces, *engine, centred, illumination, options, result.sample_count};
-  const int columns = (options.width + kTileSize - 1) / kTileSize;
-  const int rows = (options.height + kTileSize - 1) / kTileSize;
+  KeptTiles kept(result, options.checkpoint,
+                 checkpoint_key(scene, camera, options, result.sample_count));
+  const std::vector<std::uint8_t> restored = kept.restore();
   std::atomic<std::uint64_t> rays_cast{0};
-  Progress progress("path tracing", static_cast<std::size_t>(columns * rows), "tiles");
-  parallel_for(static_cast<std::size_t>(columns * rows), 1, [&](std::size_t i, std::size_t) {
-    const int tile_index = static_cast<int>(i);
-    Tile tile(job, tile_index % columns * kTileSize, tile_index / columns * kTileSize);
-    tile.trace();
-    tile.write(result);
-    rays_cast += tile.rays_cast();
+  Progress progress("path tracing", kept.count(), "tiles");
+  parallel_for(kept.count(), 1, [&](std::size_t i, std::size_t) {
+    if (!restored[i]) {
+      const Imath::V2i corner = kept.corner(i);
+      Tile tile(job, corner.x, corner.y);
+      tile.trace();
+      tile.write(result);
+      rays_cast += tile.rays_cast();
+      kept.store(i);
+    }
     progress.advance(1);
   });
   result.rays_cast = rays_cast;

@@ -22,6 +22,7 @@
 #include <string>
 
 #include "camera/camera.h"
+#include "core/checkpoint.h"
 #include "image/image.h"
 #include "mesh/scene.h"
 #include "reference/illumination.h"
@@ -45,15 +46,18 @@ struct Options {
   int bounce_count = 2;             ///< interreflections
   std::uint64_t seed = 1;
   PixelFilter filter = PixelFilter::center;
-  bool background = false;  ///< show the light where nothing is hit, instead of black
+  bool background = false;         ///< show the light where nothing is hit, instead of black
+  CheckpointOptions checkpoint{};  ///< where to keep finished tiles, for a run that continues this
+  std::string illumination_key = {};  ///< tells one light from another there
 };
 
 struct Result {
   image::Image radiance;        ///< RGBA, linear; alpha is coverage, and RGB is premultiplied by it
   image::Image standard_error;  ///< RGB, of `radiance`: one standard deviation of its mean
   int sample_count = 0;         ///< paths a pixel, as rounded
-  std::uint64_t rays_cast = 0;
-  double build_seconds = 0.0;  ///< making the ray engine
+  std::uint64_t rays_cast = 0;  ///< in this run
+  double resumed_share = 0.0;   ///< of the tiles, traced by an interrupted run before this one
+  double build_seconds = 0.0;   ///< making the ray engine
   double trace_seconds = 0.0;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "gltf/document.h"
 #include "image/environment.h"
 #include "reference/path_tracer.h"
@@ -25,6 +26,16 @@ std::unique_ptr<reference::Illumination> make_illumination(const Lighting& light
                 {.file = options.picture.light.string(), .expected = "an .exr or .hdr map"});
   return std::make_unique<reference::EnvironmentIllumination>(lighting.environment,
                                                               world_from_light);
+}
+
+std::string hash_of(const Lighting& lighting, const ReferenceOptions& options) {
+  Hasher hasher;
+  const sh::Light& light = lighting.light;
+  for (const auto& channel : light.coefficients) hasher.add(std::span(channel));
+  hasher.add(std::span(lighting.environment.pixels));
+  hasher.add(&options.picture.light_rotation, sizeof options.picture.light_rotation);
+  hasher.add(&options.full_map, sizeof options.full_map);
+  return hasher.hex();
 }
 
 /// What composite.frag does: the environment in the direction of the pixel's centre, or a colour.
@@ -74,18 +85,20 @@ void render_reference(const ReferenceOptions& options, Report& report) {
   const Lighting lighting = make_lighting(picture, transfer ? transfer->band_count : 0);
   const auto illumination = make_illumination(lighting, options);
   stage.emplace(report, "trace");
-  reference::Result result =
-      reference::trace(scene, camera, *illumination,
-                       {.brdf = brdf,
-                        .width = picture.width,
-                        .height = picture.height,
-                        .sample_count = options.sample_count,
-                        .bounce_count = options.bounce_count,
-                        .seed = options.seed,
-                        .filter = options.box_filter ? reference::PixelFilter::box
-                                                     : reference::PixelFilter::center});
+  reference::Result result = reference::trace(
+      scene, camera, *illumination,
+      {.brdf = brdf,
+       .width = picture.width,
+       .height = picture.height,
+       .sample_count = options.sample_count,
+       .bounce_count = options.bounce_count,
+       .seed = options.seed,
+       .filter = options.box_filter ? reference::PixelFilter::box : reference::PixelFilter::center,
+       .checkpoint = options.checkpoint,
+       .illumination_key = hash_of(lighting, options)});
   stage.emplace(report, "write");
   report.json()["brdf"] = brdf;
+  report.json()["resumed_share"] = result.resumed_share;
   report.json()["rays_cast"] = result.rays_cast;
   report.json()["rays_per_second"] = static_cast<double>(result.rays_cast) / result.trace_seconds;
   report.json()["sample_count"] = result.sample_count;
@@ -97,6 +110,7 @@ void render_reference(const ReferenceOptions& options, Report& report) {
   if (!options.noise.empty()) {
     image::write_image(options.noise, result.standard_error, picture.no_clobber);
   }
+  remove_checkpoint(options.checkpoint.path);
   stage.reset();
   report.add_input(picture.model);
   if (!picture.light.empty()) report.add_input(picture.light);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/checkpoint.h"
 #include "core/report.h"
 #include "runtime/render_job.h"
 
@@ -20,11 +21,12 @@ struct ReferenceOptions {
   bool full_map = false;   ///< the whole environment map, else its bands
   bool box_filter = true;  ///< the mean over the pixel's square, else its centre
   std::uint64_t seed = 1;
+  CheckpointOptions checkpoint{};  ///< where to keep what is done; removed at the end
 };
 
-/// Adds to the report: stages, "brdf", "rays_cast", "rays_per_second", "sample_count" and
-/// "relative_standard_error" (of the picture: root mean square over root mean square). Throws
-/// Error.
+/// Adds to the report: stages, "brdf", "resumed_share", "rays_cast", "rays_per_second",
+/// "sample_count" and "relative_standard_error" (of the picture: root mean square over root mean
+/// square). Throws Error.
 void render_reference(const ReferenceOptions& options, Report& report);
 
 }  // namespace prt::runtime
