@@ -148,6 +148,9 @@ class BadBake(ToolTest):
         self.quad = self.folder / "quad.glb"
         self.transfer = self.folder / "quad.transfer.exr"
         self.baked = self.folder / "quad.prt.glb"
+        self.made_once(self.make_files)
+
+    def make_files(self):
         source = self.write("quad.obj", QUAD_OBJ)
         self.done("prt-import", source, "-o", self.quad)
         self.done("prt-transfer", self.quad, "-o", self.transfer, "--bands", 2, "--rays", 64)
@@ -221,15 +224,12 @@ class BadOutput(ToolTest):
 
     def setUp(self):
         super().setUp()
-        source = self.write("quad.obj", QUAD_OBJ)
+        source = self.folder / "quad.obj"
         self.quad = self.folder / "quad.glb"
         self.transfer = self.folder / "quad.transfer.exr"
         self.light = self.folder / "light.json"
         self.baked = self.folder / "quad.prt.glb"
-        self.done("prt-import", source, "-o", self.quad, "--max-edge", 0.05)
-        self.done("prt-transfer", self.quad, "-o", self.transfer, "--bands", 5, "--rays", 64)
-        self.done("prt-light", "--constant", "1,1,1", "-o", self.light)
-        self.done("prt-compress", self.quad, self.transfer, "-o", self.baked, "--clusters", 4)
+        self.made_once(self.make_files)
         self.commands = {
             ".glb": ("prt-import", source, "--max-edge", 0.05),
             ".transfer.exr": ("prt-transfer", self.quad, "--bands", 5, "--rays", 64),
@@ -238,6 +238,13 @@ class BadOutput(ToolTest):
             ".exr": ("prt-render", self.baked, "--light", self.light, "--size", "256x256"),
             ".json": ("prt-light", "--constant", "1,1,1"),
         }
+
+    def make_files(self):
+        source = self.write("quad.obj", QUAD_OBJ)
+        self.done("prt-import", source, "-o", self.quad, "--max-edge", 0.05)
+        self.done("prt-transfer", self.quad, "-o", self.transfer, "--bands", 5, "--rays", 64)
+        self.done("prt-light", "--constant", "1,1,1", "-o", self.light)
+        self.done("prt-compress", self.quad, self.transfer, "-o", self.baked, "--clusters", 4)
 
     def test_full_disk(self):
         for extension, command in self.commands.items():

@@ -14,11 +14,19 @@ TOOLS = ("prt-import", "prt-light", "prt-transfer", "prt-compress", "prt-render"
 
 
 class Pipeline(ToolTest):
+    def paths(self):
+        return {name: self.folder / f"a.{name}" for name in
+                ("glb", "transfer.exr", "prt.glb", "json", "i", "t", "c")}
+
+    def box(self):
+        """Paths of the box, baked once for all tests."""
+        self.made_once(lambda: self.bake(BOX))
+        return self.paths()
+
     def bake(self, source, *, options=(), edge=0.1, **counts):
         """import → transfer → compress → light; returns the paths."""
         clusters, components = counts.get("clusters", 16), counts.get("components", 4)
-        paths = {name: self.folder / f"a.{name}" for name in
-                 ("glb", "transfer.exr", "prt.glb", "json", "i", "t", "c")}
+        paths = self.paths()
         self.done("prt-import", source, "-o", paths["glb"], "--max-edge", edge, "--crease-angle",
                   30, "--report", paths["i"], *options)
         self.done("prt-transfer", paths["glb"], "-o", paths["transfer.exr"], "--bands", 4,
@@ -31,7 +39,7 @@ class Pipeline(ToolTest):
         return paths
 
     def test_reports_have_the_documented_keys(self):
-        paths = self.bake(BOX)
+        paths = self.box()
         common = {"tool", "version", "options", "inputs", "outputs", "stages", "seconds",
                   "peak_memory_bytes", "threads"}
         transfer, compress = self.load(paths["t"]), self.load(paths["c"])
@@ -87,7 +95,7 @@ class Pipeline(ToolTest):
         self.assertEqual(digests[1], digests[2])
 
     def test_other_programs_accept_the_files(self):
-        paths = self.bake(BOX)
+        paths = self.box()
         for script in ("validate.mjs", "load_three.mjs"):
             result = subprocess.run(
                 ["node", SOURCE / "tests/gltf" / script, paths["glb"], paths["prt.glb"]],
@@ -96,14 +104,14 @@ class Pipeline(ToolTest):
         self.assertIn("_prt_cluster", result.stdout.lower())
 
     def test_inspect_finds_the_baked_file_valid(self):
-        paths = self.bake(BOX)
+        paths = self.box()
         for name in ("glb", "prt.glb", "transfer.exr", "json"):
             result = self.done("prt-inspect", paths[name], "--json")
             self.assertTrue(result.stdout.strip().startswith("{"))
         self.done("prt-inspect", paths["prt.glb"])
 
     def test_documented_render_commands(self):
-        paths = self.bake(BOX)
+        paths = self.box()
         size = ("--size", "64x48")
         png, u, r = (self.folder / name for name in ("a.png", "u.exr", "r.exr"))
         light = ("--light", paths["json"])
@@ -117,7 +125,7 @@ class Pipeline(ToolTest):
 
     def test_unknown_light_bands_do_not_matter(self):
         """A light of more or fewer bands than the transfer is cut or padded."""
-        paths = self.bake(BOX)
+        paths = self.box()
         for bands in (2, 8):
             light = self.folder / "other.json"
             self.done("prt-light", WORLD / "studio.exr", "-o", light, "--bands", bands)

@@ -36,6 +36,16 @@ class ToolTest(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="prtkit-test-"))
         self.addCleanup(shutil.rmtree, self.folder)
 
+    def made_once(self, make):
+        """Calls make(), which fills the scratch folder, for the first test of the class; the others
+        get copies of its files."""
+        made = type(self)
+        if "files" not in vars(made):
+            make()
+            made.files = {path.name: content for path, content in self.listing().items()}
+        for name, content in made.files.items():
+            self.write(name, content)
+
     def done(self, tool, *arguments, **keywords):
         """Runs a tool that has to succeed."""
         result = run(tool, *arguments, **keywords)
