@@ -2,7 +2,6 @@
 
 #include <lapacke.h>
 
-#include <algorithm>
 #include <cassert>
 #include <opencv2/core.hpp>
 
@@ -12,22 +11,28 @@ namespace prt::linalg {
 
 namespace {
 
-/// syevr sorts upwards and, asked in column-major order, leaves one vector after the other. A
-/// symmetric matrix is the same in both orders, except that the triangles change their names.
-template <class T, class Solver>
-Eigenpairs<T> solve(Solver syevr, MatrixView<T> symmetric, std::size_t count) {
+std::vector<double> elements(const cv::Mat& matrix) {
+  return {matrix.ptr<double>(), matrix.ptr<double>() + matrix.total()};
+}
+
+}  // namespace
+
+// dsyevr sorts upwards and, asked in column-major order, leaves one vector after the other. A
+// symmetric matrix is the same in both orders, except that the triangles change their names.
+Eigenpairs largest_eigenpairs(MatrixD symmetric, std::size_t count) {
   const std::size_t n = symmetric.row_count;
   assert(symmetric.column_count == n && count <= n);
-  Eigenpairs<T> pairs;
+  Eigenpairs pairs;
   if (count == 0) return pairs;
-  std::vector<T> values(n), vectors(count * n);
+  std::vector<double> values(n), vectors(count * n);
   std::vector<lapack_int> support(2 * count);
   lapack_int found = 0;
   const auto size = static_cast<lapack_int>(n);
   const lapack_int first = size - static_cast<lapack_int>(count) + 1;
-  const lapack_int info = syevr(LAPACK_COL_MAJOR, 'V', 'I', 'L', size, symmetric.data,
-                                static_cast<lapack_int>(symmetric.stride), T(0), T(0), first, size,
-                                T(0), &found, values.data(), vectors.data(), size, support.data());
+  const lapack_int info =
+      LAPACKE_dsyevr(LAPACK_COL_MAJOR, 'V', 'I', 'L', size, symmetric.data,
+                     static_cast<lapack_int>(symmetric.stride), 0.0, 0.0, first, size, 0.0, &found,
+                     values.data(), vectors.data(), size, support.data());
   if (info != 0 || found != static_cast<lapack_int>(count)) {
     throw_failed("LAPACK found no eigenpairs of a matrix");
   }
@@ -36,20 +41,6 @@ Eigenpairs<T> solve(Solver syevr, MatrixView<T> symmetric, std::size_t count) {
     pairs.vectors.insert(pairs.vectors.end(), &vectors[i * n], &vectors[i * n] + n);
   }
   return pairs;
-}
-
-std::vector<double> elements(const cv::Mat& matrix) {
-  return {matrix.ptr<double>(), matrix.ptr<double>() + matrix.total()};
-}
-
-}  // namespace
-
-Eigenpairs<float> largest_eigenpairs(MatrixF symmetric, std::size_t count) {
-  return solve<float>(LAPACKE_ssyevr, symmetric, count);
-}
-
-Eigenpairs<double> largest_eigenpairs(MatrixD symmetric, std::size_t count) {
-  return solve<double>(LAPACKE_dsyevr, symmetric, count);
 }
 
 Svd svd(ConstMatrixD a) {

@@ -8,18 +8,16 @@
 
 namespace prt::linalg {
 
-template <class T>
 struct Eigenpairs {
-  std::vector<T> values;   ///< largest first
-  std::vector<T> vectors;  ///< one a row, orthonormal; the sign is LAPACK's
+  std::vector<double> values;   ///< largest first
+  std::vector<double> vectors;  ///< one a row, orthonormal; the sign is LAPACK's
 };
 
 /// The `count` <= n largest eigenvalues of a symmetric n × n matrix, of which the upper triangle is
 /// read and both are overwritten, with their vectors (count × n). [Sloan03] §4.1 saves time in the
 /// same way. Throws Error (failed) when LAPACK does not converge, which finite input does not
 /// cause.
-Eigenpairs<float> largest_eigenpairs(MatrixF symmetric, std::size_t count);
-Eigenpairs<double> largest_eigenpairs(MatrixD symmetric, std::size_t count);
+Eigenpairs largest_eigenpairs(MatrixD symmetric, std::size_t count);
 
 struct Svd {
   std::vector<double> values;  ///< min(m, n), largest first

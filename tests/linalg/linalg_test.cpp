@@ -80,20 +80,15 @@ TEST(Blas, SplitIntoRowsOnManyThreadsGivesTheSameBytes) {
   EXPECT_EQ(product(1), product(4));
 }
 
-template <class T>
-class EigenpairsOf : public testing::Test {};
-TYPED_TEST_SUITE(EigenpairsOf, Precisions);
-
-TYPED_TEST(EigenpairsOf, FindsTheLargestPairsInOrder) {
-  using T = TypeParam;
+TEST(Eigenpairs, AreTheLargestInOrder) {
   constexpr std::size_t n = 40, count = 6;
-  const double tolerance = sizeof(T) == 4 ? 2e-5 : 1e-13;
-  const auto factor = random_values<T>(n * n, 6);
-  std::vector<T> matrix(n * n);
-  gemm(T(1), {factor.data(), n, n}, Transpose::yes, {factor.data(), n, n}, Transpose::no, T(0),
+  const double tolerance = 1e-13;
+  const auto factor = random_values<double>(n * n, 6);
+  std::vector<double> matrix(n * n);
+  gemm(1.0, {factor.data(), n, n}, Transpose::yes, {factor.data(), n, n}, Transpose::no, 0.0,
        {matrix.data(), n, n});
   const auto untouched = matrix;
-  const Eigenpairs<T> pairs = largest_eigenpairs({matrix.data(), n, n}, count);
+  const Eigenpairs pairs = largest_eigenpairs({matrix.data(), n, n}, count);
   ASSERT_EQ(pairs.values.size(), count);
   ASSERT_EQ(pairs.vectors.size(), count * n);
   for (std::size_t p = 0; p < count; ++p) {
@@ -101,22 +96,22 @@ TYPED_TEST(EigenpairsOf, FindsTheLargestPairsInOrder) {
     for (std::size_t i = 0; i < n; ++i) {
       double product = 0.0;
       for (std::size_t j = 0; j < n; ++j) {
-        product += double{untouched[i * n + j]} * double{pairs.vectors[p * n + j]};
+        product += untouched[i * n + j] * pairs.vectors[p * n + j];
       }
-      EXPECT_NEAR(product, double{pairs.values[p]} * double{pairs.vectors[p * n + i]}, tolerance);
+      EXPECT_NEAR(product, pairs.values[p] * pairs.vectors[p * n + i], tolerance);
     }
     for (std::size_t q = 0; q <= p; ++q) {
       double dot = 0.0;
       for (std::size_t i = 0; i < n; ++i) {
-        dot += double{pairs.vectors[p * n + i]} * double{pairs.vectors[q * n + i]};
+        dot += pairs.vectors[p * n + i] * pairs.vectors[q * n + i];
       }
       EXPECT_NEAR(dot, p == q ? 1.0 : 0.0, tolerance);
     }
   }
   // None is larger: the trace bounds the rest.
-  const Eigenpairs<T> all = [&] {
+  const Eigenpairs all = [&] {
     auto copy = untouched;
-    return largest_eigenpairs(MatrixView<T>{copy.data(), n, n}, n);
+    return largest_eigenpairs(MatrixD{copy.data(), n, n}, n);
   }();
   for (std::size_t p = 0; p < count; ++p) EXPECT_NEAR(all.values[p], pairs.values[p], tolerance);
 }
