@@ -21,10 +21,17 @@ if(PRTKIT_FUZZ)
   target_link_options(prt_options INTERFACE -fsanitize=address,undefined)
 endif()
 
-# prt_module(NAME DEPENDS public… PRIVATE private…): static library prt_NAME from every .cpp here.
+# prt_module(NAME SOURCES files… DEPENDS public… PRIVATE private…): static library prt_NAME from
+# those files, or from every .cpp here that no module before it was made from.
 function(prt_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp *.h)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  set(sources ${ARG_SOURCES})
+  if(NOT sources)
+    file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp *.h)
+    get_property(taken DIRECTORY PROPERTY PRTKIT_TAKEN_SOURCES)
+    list(REMOVE_ITEM sources ${taken})
+  endif()
+  set_property(DIRECTORY APPEND PROPERTY PRTKIT_TAKEN_SOURCES ${sources})
   add_library(prt_${name} STATIC ${sources})
   set_target_properties(prt_${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(prt_${name} PUBLIC prt_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE})
