@@ -200,6 +200,7 @@ std::vector<unsigned char> encode(const Image& image, const std::filesystem::pat
     bytes = srgb8_from_linear(image);
   } else {
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "1970:01:01 00:00:00");  // else the time of day
   }
   const auto output = OIIO::ImageOutput::create(is_png ? "png" : "openexr");
   std::vector<unsigned char> file;

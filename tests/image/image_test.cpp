@@ -82,6 +82,12 @@ TEST_F(ImageFile, WritesTheSameBytesTwice) {
   }
 }
 
+TEST_F(ImageFile, TellsNothingOfWhenItWasWritten) {
+  write_image(folder_ / "a.exr", random_image(8, 8, 3, 1));
+  const std::string file = read_text_file(folder_ / "a.exr");
+  EXPECT_NE(file.find("1970:01:01 00:00:00"), std::string::npos);  // OpenImageIO insists on a date
+}
+
 TEST_F(ImageFile, FormatFollowsMagicBytesNotTheName) {
   const Image image = random_image(8, 8, 3, 3);
   write_image(folder_ / "a.exr", image);
