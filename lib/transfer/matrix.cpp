@@ -28,10 +28,6 @@ using linalg::ConstMatrixF;
 using linalg::MatrixF;
 using linalg::Transpose;
 
-constexpr std::size_t size_of(int band_count) {
-  return static_cast<std::size_t>(sh::coefficient_count(band_count));
-}
-
 void check_options(const MatrixOptions& options) {
   check_range("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
   check_range("ray count", options.ray_count, 1, kMaxRayCount);
@@ -58,7 +54,7 @@ signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions
   if (header.dimension() > signal::kMaxDimension) {
     throw Error(ErrorKind::usage, "transfer matrices too large for a file",
                 {.found = fmt::format("{} × {} × {} coefficients", header.channel_count,
-                                      header.row_count, size_of(header.band_count)),
+                                      header.row_count, sh::row_size(header.band_count)),
                  .expected = fmt::format("at most {}", signal::kMaxDimension),
                  .advice = "Ask for fewer with --bands or --rows."});
   }
@@ -86,7 +82,7 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
       surfaces_(scene, {options.brdf, options.band_count, options.row_count, options.projection},
                 header_.channel_count) {
   stats_ = {};
-  const std::size_t n = size_of(options.band_count);
+  const std::size_t n = sh::row_size(options.band_count);
   const auto channels = static_cast<std::size_t>(header_.channel_count);
   if (options.bounce_count > 0) incident_channel_count_ = channels;
   moment_stride_ = padded_columns(incident_channel_count_ * n);
@@ -154,7 +150,7 @@ void MatrixTransfer::compute(std::size_t first, std::size_t count, std::span<flo
       return reflection_->rank(a) < reflection_->rank(b);
     });
   }
-  const std::size_t n = size_of(header_.band_count);
+  const std::size_t n = sh::row_size(header_.band_count);
   const auto dimension = static_cast<std::size_t>(header_.dimension());
   std::atomic<std::uint64_t> rays{0};
   parallel_for(count, reflection_ ? reflection_->block_size() : kVertexBlock,
@@ -174,8 +170,8 @@ void MatrixTransfer::compute(std::size_t first, std::size_t count, std::span<flo
 // Vertices side by side, so that the product for T_p is of matrices, not of vectors.
 std::uint64_t MatrixTransfer::compute_block(std::span<const std::uint32_t> vertices,
                                             const MatrixSink& sink) const {
-  const std::size_t n = size_of(header_.band_count), count = vertices.size();
-  const std::size_t m = size_of(2 * header_.band_count - 1);
+  const std::size_t n = sh::row_size(header_.band_count), count = vertices.size();
+  const std::size_t m = sh::row_size(2 * header_.band_count - 1);
   std::vector<float> visible(count * m), direct(count * n * n);
   for (std::size_t v = 0; v < count; ++v) {
     std::copy_n(&visibility_.rows[vertices[v] * m], m, &visible[v * m]);
@@ -197,7 +193,7 @@ std::uint64_t MatrixTransfer::compute_block(std::span<const std::uint32_t> verti
 
 void MatrixTransfer::reflect(std::span<const std::uint32_t> vertices,
                              const std::vector<float>& moments, const MatrixSink& sink) const {
-  const std::size_t n = size_of(header_.band_count), size = n * moment_stride_;
+  const std::size_t n = sh::row_size(header_.band_count), size = n * moment_stride_;
   const auto channels = static_cast<std::size_t>(header_.channel_count);
   const auto rows = static_cast<std::size_t>(header_.row_count);
   std::vector<float> operators(channels * surfaces_.operator_size());
@@ -226,10 +222,10 @@ void MatrixTransfer::turn(const mesh::Frame& frame, const float* moments, float*
   const bool mirrored = right.dot(y) < 0.0f;
   const sh::Rotation rotation(header_.band_count, Matrix4(x.x, right.x, z.x, 0, x.y, right.y, z.y,
                                                           0, x.z, right.z, z.z, 0, 0, 0, 0, 1));
-  std::fill_n(turned, size_of(header_.band_count) * moment_stride_, 0.0f);
-  std::array<float, size_of(2 * kMaxMatrixBandCount - 1)> block;
+  std::fill_n(turned, sh::row_size(header_.band_count) * moment_stride_, 0.0f);
+  std::array<float, sh::row_size(2 * kMaxMatrixBandCount - 1)> block;
   for (int l = 0; l < header_.band_count; ++l) {
-    const std::size_t size = static_cast<std::size_t>(2 * l + 1), first = size_of(l);
+    const std::size_t size = static_cast<std::size_t>(2 * l + 1), first = sh::row_size(l);
     float* entry = block.data();
     for (int k = -l; k <= l; ++k) {
       for (int i = -l; i <= l; ++i) {
@@ -244,7 +240,7 @@ void MatrixTransfer::turn(const mesh::Frame& frame, const float* moments, float*
 
 void MatrixTransfer::to_field(const float* matrix, float* row) const {
   const ExitBasis& basis = reflection_->basis();
-  const std::size_t n = size_of(header_.band_count);
+  const std::size_t n = sh::row_size(header_.band_count);
   const auto channels = static_cast<std::size_t>(header_.channel_count);
   std::vector<float> part(basis.function_count * matrix_stride_);
   for (std::size_t c = 0; c < channels; ++c) {
