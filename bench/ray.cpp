@@ -9,6 +9,7 @@
 #include <pmmintrin.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -21,6 +22,7 @@
 #include "mesh/mesh_file.h"
 #include "mesh/normals.h"
 #include "ray/engine.h"
+#include "ray/shadow_tree.h"
 #include "transfer/diffuse.h"
 #include "transfer/directions.h"
 #include "transfer/spatial_order.h"
@@ -42,17 +44,30 @@ mesh::TriangleMesh read_model(const std::string& path) {
   return mesh;
 }
 
-/// The rays of every kBlockStride-th block of neighbouring vertices: a vertex, then its directions.
-std::vector<Ray> make_rays(const mesh::TriangleMesh& mesh, const transfer::Directions& directions) {
+struct Origin {
+  Vec3 p, normal;
+};
+
+/// The vertices of every kBlockStride-th block of neighbours.
+std::vector<Origin> make_origins(const mesh::TriangleMesh& mesh) {
   const std::vector<std::uint32_t> order = transfer::spatial_order(mesh.positions);
-  std::vector<Ray> rays;
+  std::vector<Origin> origins;
   for (std::size_t first = 0; first < order.size(); first += kVertexBlock * kBlockStride) {
     for (std::size_t v = first; v < std::min(first + kVertexBlock, order.size()); ++v) {
       const Vec3 n = mesh.normals[order[v]];
-      const Vec3 origin = ray::offset_origin(mesh.positions[order[v]], n);
-      for (std::size_t d = 0; d < directions.count(); ++d) {
-        if (n.dot(directions[d]) > 0.0f) rays.push_back({origin, 0.0f, directions[d]});
-      }
+      origins.push_back({ray::offset_origin(mesh.positions[order[v]], n), n});
+    }
+  }
+  return origins;
+}
+
+/// Origin after origin, all directions above its horizon.
+std::vector<Ray> make_rays(const std::vector<Origin>& origins,
+                           const transfer::Directions& directions) {
+  std::vector<Ray> rays;
+  for (const Origin& from : origins) {
+    for (std::size_t d = 0; d < directions.count(); ++d) {
+      if (from.normal.dot(directions[d]) > 0.0f) rays.push_back({from.p, 0.0f, directions[d]});
     }
   }
   return rays;
@@ -73,14 +88,14 @@ struct Rate {
   std::size_t blocked = 0;
 };
 
-Rate measure(std::size_t count,
+Rate measure(std::size_t count, std::size_t task_size,
              const std::function<std::size_t(std::size_t begin, std::size_t end)>& trace) {
-  std::vector<std::size_t> blocked(block_count(count, kRaysPerTask));
+  std::vector<std::size_t> blocked(block_count(count, task_size));
   const double start = cpu_seconds();
-  parallel_for(count, kRaysPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, task_size, [&](std::size_t begin, std::size_t end) {
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-    blocked[begin / kRaysPerTask] = trace(begin, end);
+    blocked[begin / task_size] = trace(begin, end);
   });
   const double seconds = (cpu_seconds() - start) / thread_count();
   return {static_cast<double>(count) / seconds * 1e-6,
@@ -121,7 +136,7 @@ class BareEmbree {
   BareEmbree& operator=(const BareEmbree&) = delete;
 
   Rate single(const std::vector<RTCRay>& rays, bool coherent) const {
-    return measure(rays.size(), [&](std::size_t begin, std::size_t end) {
+    return measure(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
       RTCIntersectContext context = make_context(coherent);
       std::size_t blocked = 0;
       for (std::size_t i = begin; i < end; ++i) {
@@ -134,7 +149,7 @@ class BareEmbree {
   }
 
   Rate stream(const std::vector<RTCRay>& rays, bool coherent) const {
-    return measure(rays.size(), [&](std::size_t begin, std::size_t end) {
+    return measure(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
       constexpr std::size_t kStream = 64;
       RTCIntersectContext context = make_context(coherent);
       RTCRay batch[kStream];
@@ -161,7 +176,7 @@ class BareEmbree {
       packet.tnear[k] = ray.tnear, packet.tfar[k] = ray.tfar, packet.time[k] = 0.0f;
       packet.mask[k] = ray.mask, packet.id[k] = 0, packet.flags[k] = 0;
     }
-    return measure(packed.size() * kWidth, [&](std::size_t begin, std::size_t end) {
+    return measure(packed.size() * kWidth, kRaysPerTask, [&](std::size_t begin, std::size_t end) {
       RTCIntersectContext context = make_context(coherent);
       alignas(64) int valid[kWidth];
       std::fill_n(valid, kWidth, -1);
@@ -191,11 +206,29 @@ std::vector<RTCRay> embree_rays(const std::vector<Ray>& rays) {
 }
 
 Rate measure_engine(const ray::Engine& engine, const std::vector<Ray>& rays) {
-  return measure(rays.size(), [&](std::size_t begin, std::size_t end) {
+  return measure(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint8_t> blocked(end - begin);
     engine.occluded({&rays[begin], end - begin}, blocked);
     return static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), 1));
   });
+}
+
+/// The same rays, but the shadow tree finds those above the horizon itself.
+Rate measure_shadow_tree(const ray::ShadowTree& tree, const std::vector<Origin>& origins,
+                         const std::vector<ray::Beam>& beams, std::size_t ray_count) {
+  Rate rate = measure(origins.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<ray::BeamLanes> lanes(beams.size());
+    std::size_t blocked = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      tree.trace(origins[i].p, origins[i].normal, beams, lanes);
+      for (const ray::BeamLanes& l : lanes) {
+        blocked += static_cast<std::size_t>(std::popcount(l.blocked));
+      }
+    }
+    return blocked;
+  });
+  rate.mrays *= static_cast<double>(ray_count) / static_cast<double>(origins.size());
+  return rate;
 }
 
 /// The whole bake: scene and rays made, traced and projected; everything is counted.
@@ -257,15 +290,21 @@ int main(int argc, char** argv) {
   const std::string path = argc > 1 ? argv[1] : "/usr/share/glmark2/models/bunny.obj";
   const int ray_count = argc > 2 ? std::atoi(argv[2]) : 2048;
   const mesh::TriangleMesh mesh = read_model(path);
-  const std::vector<Ray> rays =
-      make_rays(mesh, transfer::make_directions(2 * static_cast<std::size_t>(ray_count), 1));
+  const transfer::Directions directions =
+      transfer::make_directions(2 * static_cast<std::size_t>(ray_count), 1);
+  const std::vector<Origin> origins = make_origins(mesh);
+  const std::vector<Ray> rays = make_rays(origins, directions);
   const std::vector<RTCRay> bare = embree_rays(rays);
   const auto engine = ray::make_embree_engine({mesh.positions, mesh.indices});
+  const ray::ShadowTree tree({mesh.positions, mesh.indices});
   const BareEmbree robust(mesh, true, RTC_BUILD_QUALITY_MEDIUM);
   const BareEmbree fast(mesh, false, RTC_BUILD_QUALITY_MEDIUM);
   const BareEmbree fast_high(mesh, false, RTC_BUILD_QUALITY_HIGH);
   std::vector<Mode> modes;
   modes.push_back({"prtkit ray::Engine", [&] { return measure_engine(*engine, rays); }});
+  modes.push_back({"prtkit ray::ShadowTree", [&] {
+                     return measure_shadow_tree(tree, origins, directions.beams, rays.size());
+                   }});
   modes.push_back({"prtkit transfer, 5 bands, whole model", [&] {
                      return Rate{measure_bake(mesh, ray_count), 0};
                    }});
@@ -279,10 +318,11 @@ int main(int argc, char** argv) {
     fmt::print("{:<58} {:7.2f}   {:6.3f}%\n", mode.name, mode.best.mrays,
                100.0 * static_cast<double>(mode.best.blocked) / static_cast<double>(rays.size()));
   }
-  fmt::print("\n{:<32} {:>16} {:>16}\n", "", "ray::Engine", "transfer");
+  fmt::print("\n{:<32} {:>16} {:>16} {:>16}\n", "", "ray::Engine", "ray::ShadowTree", "transfer");
   for (const char* of : {"Embree robust", "Embree"}) {
     const double best = fastest(modes, of);
-    fmt::print("of the fastest {:<17} {:>15.0f}% {:>15.0f}%\n", of,
-               100.0 * modes[0].best.mrays / best, 100.0 * modes[1].best.mrays / best);
+    fmt::print("of the fastest {:<17} {:>15.0f}% {:>15.0f}% {:>15.0f}%\n", of,
+               100.0 * modes[0].best.mrays / best, 100.0 * modes[1].best.mrays / best,
+               100.0 * modes[2].best.mrays / best);
   }
 }

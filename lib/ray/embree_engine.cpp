@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "core/error.h"
 #include "ray/engine.h"
@@ -38,32 +37,6 @@ struct SceneDeleter {
 using Device = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using Scene = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-void check_triangles(const Triangles& triangles) {
-  for (std::size_t i = 0; i < triangles.positions.size(); ++i) {
-    const Vec3& p = triangles.positions[i];
-    // Written so that NaN fails.
-    const bool valid = std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate &&
-                       std::abs(p.z) <= kMaxCoordinate;
-    if (valid) continue;
-    throw_bad_input("vertex position cannot be traced",
-                    {.element = fmt::format("vertex {}", i),
-                     .found = fmt::format("({}, {}, {})", p.x, p.y, p.z),
-                     .expected = fmt::format("finite coordinates up to {:g}", kMaxCoordinate)});
-  }
-  if (triangles.indices.size() % 3 != 0) {
-    throw_bad_input("index count is no multiple of 3",
-                    {.found = fmt::format("{}", triangles.indices.size())});
-  }
-  for (std::size_t i = 0; i < triangles.indices.size(); ++i) {
-    if (triangles.indices[i] < triangles.positions.size()) continue;
-    throw_bad_input("vertex index out of range",
-                    {.element = fmt::format("triangle {}", i / 3),
-                     .found = fmt::format("{}", triangles.indices[i]),
-                     .expected = fmt::format("below {}", triangles.positions.size())});
-  }
-  if (triangles.indices.size() / 3 >= kNoHit) throw_bad_input("too many triangles");
-}
-
 /// Copies into a buffer of Embree's (which pads it for its vector loads).
 template <class T>
 void copy_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t stride,
@@ -78,18 +51,6 @@ void check_device(RTCDevice device) {
   if (error != RTC_ERROR_NONE) {
     throw_failed("Embree cannot build the scene", {.found = fmt::format("error {}", int{error})});
   }
-}
-
-/// A packet of rays from one origin, without directions.
-void load_origin(RTCRay16& packet, const Vec3& origin) {
-  std::fill_n(packet.org_x, kWidth, origin.x);
-  std::fill_n(packet.org_y, kWidth, origin.y);
-  std::fill_n(packet.org_z, kWidth, origin.z);
-  std::fill_n(packet.tnear, kWidth, 0.0f);
-  std::fill_n(packet.time, kWidth, 0.0f);
-  std::fill_n(packet.mask, kWidth, 0xffffffffu);
-  std::fill_n(packet.id, kWidth, 0u);
-  std::fill_n(packet.flags, kWidth, 0u);
 }
 
 void load_lane(RTCRay16& packet, std::size_t lane, const Ray& ray) {
@@ -150,24 +111,6 @@ class EmbreeEngine final : public Engine {
     for_each_packet(
         packet, rays.size(),
         [&](std::size_t lane, std::size_t i) { load_lane(packet, lane, rays[i]); }, rtcOccluded16,
-        [&](std::size_t lane, std::size_t i) { occluded[i] = is_occluded(packet, lane); });
-  }
-
-  void occluded_from(const Vec3& origin, const PlanarDirections& directions,
-                     std::span<const std::uint32_t> chosen,
-                     std::span<std::uint8_t> occluded) const override {
-    assert(occluded.size() >= chosen.size());
-    RTCRay16 packet;
-    load_origin(packet, origin);
-    for_each_packet(
-        packet, chosen.size(),
-        [&](std::size_t lane, std::size_t i) {
-          packet.dir_x[lane] = directions.x[chosen[i]];
-          packet.dir_y[lane] = directions.y[chosen[i]];
-          packet.dir_z[lane] = directions.z[chosen[i]];
-          packet.tfar[lane] = std::numeric_limits<float>::infinity();
-        },
-        rtcOccluded16,
         [&](std::size_t lane, std::size_t i) { occluded[i] = is_occluded(packet, lane); });
   }
 

@@ -36,16 +36,15 @@ struct Hit {
 constexpr float kMaxCoordinate = 1e18f;
 
 /// Triangles of one scene, vertices numbered through. Finite positions and valid indices, checked
-/// by the engine's maker (Embree silently ignores others), which throws Error (bad_input).
+/// by what traces them (Embree silently ignores others).
 struct Triangles {
   std::span<const Vec3> positions;
   std::span<const std::uint32_t> indices;  ///< three a triangle
 };
 
-/// Directions as three lists of their coordinates.
-struct PlanarDirections {
-  std::span<const float> x, y, z;
-};
+/// Throws Error (bad_input) unless positions are finite and at most kMaxCoordinate and indices
+/// valid.
+void check_triangles(const Triangles& triangles);
 
 class Engine {
  public:
@@ -54,12 +53,6 @@ class Engine {
   virtual void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
   /// occluded[i] = 1 when anything, front or back, lies in (t_near, t_far], else 0.
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const = 0;
-  /// Many rays from one origin, the chosen ones (numbers) of a list of directions: occluded[i] = 1
-  /// when anything lies along the i-th chosen one, t > 0, else 0. Neighbours in `chosen` should be
-  /// neighbours on the sphere. occluded.size() >= chosen.size().
-  virtual void occluded_from(const Vec3& origin, const PlanarDirections& directions,
-                             std::span<const std::uint32_t> chosen,
-                             std::span<std::uint8_t> occluded) const = 0;
 };
 
 /// Version of Embree, "3.13.5".

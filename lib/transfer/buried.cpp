@@ -6,13 +6,16 @@
 #include <numeric>
 #include <set>
 
+#include "core/parallel.h"
+
 namespace prt::transfer {
 
 namespace {
 
-constexpr std::size_t kLeakShare = 1000;  // rays that may slip out between faces: one in so many
-constexpr float kContact = 0x1p-16f;      // four steps of ray::offset_origin
-constexpr float kInsideShare = 0.9f;      // a corner of a dark room touches walls with 3/4
+constexpr std::size_t kLeakShare = 1000;   // rays that may slip out between faces: one in so many
+constexpr std::size_t kSuspectBlock = 16;  // vertices of a parallel block
+constexpr float kContact = 0x1p-16f;       // four steps of ray::offset_origin
+constexpr float kInsideShare = 0.9f;       // a corner of a dark room touches walls with 3/4
 
 /// Vertices that are one point of the surface.
 struct Node {
@@ -56,11 +59,8 @@ std::vector<Node> buried_graph(const SceneIndex& index, const std::vector<std::u
   return nodes;
 }
 
-}  // namespace
-
-bool is_buried(Hemisphere& hemisphere, float magnitude) {
-  const std::size_t blocked_count = hemisphere.blocked().size();
-  if (blocked_count == 0 || hemisphere.visible_count() * kLeakShare > blocked_count) return false;
+/// Whether most of what the vertex last traced sees are backs of faces or at its own place.
+bool is_inside(Hemisphere& hemisphere, float magnitude) {
   const std::span<const ray::Hit> hits = hemisphere.hits();
   float inside = 0.0f, total = 0.0f;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -69,6 +69,33 @@ bool is_buried(Hemisphere& hemisphere, float magnitude) {
     if (hits[i].back_face || hits[i].t <= kContact * magnitude) inside += cosine;
   }
   return inside > kInsideShare * total;
+}
+
+}  // namespace
+
+bool sees_nothing(const Hemisphere& hemisphere) {
+  const std::size_t blocked_count = hemisphere.blocked().size();
+  return blocked_count > 0 && hemisphere.visible_count() * kLeakShare <= blocked_count;
+}
+
+std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directions,
+                             std::vector<std::uint8_t>& buried) {
+  std::vector<std::uint32_t> suspects;
+  for (std::uint32_t v : index.vertex_order()) {
+    if (buried[v]) suspects.push_back(v);
+  }
+  if (suspects.empty()) return 0;
+  index.engine();  // is built by all threads, not by the first that asks for it
+  std::vector<std::uint64_t> rays(block_count(suspects.size(), kSuspectBlock));
+  parallel_for(suspects.size(), kSuspectBlock, [&](std::size_t begin, std::size_t end) {
+    Hemisphere hemisphere(index, directions);
+    for (std::size_t i = begin; i < end; ++i) {
+      hemisphere.trace(suspects[i]);
+      buried[suspects[i]] = is_inside(hemisphere, index.magnitude(suspects[i]));
+    }
+    rays[begin / kSuspectBlock] = hemisphere.rays_cast();
+  });
+  return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
 BuriedRepair::BuriedRepair(const SceneIndex& index, const std::vector<std::uint8_t>& buried) {

@@ -11,11 +11,16 @@
 
 namespace prt::transfer {
 
-/// Whether the vertex last traced is buried: of its rays at most one in a thousand leaves the
-/// scene, and nine in ten of the others (by cosine) hit backs of faces, which only a point inside
-/// of something sees, or end within rounding of their origin. A dark open cavity shows fronts at a
-/// distance.
-bool is_buried(Hemisphere& hemisphere, float magnitude);
+/// Whether the vertex last traced may be buried: of its rays at most one in a thousand leaves the
+/// scene.
+bool sees_nothing(const Hemisphere& hemisphere);
+
+/// Clears the marks, buried[v] != 0, of vertices that see nothing but are not buried: of a buried
+/// one nine in ten rays (by cosine) hit backs of faces, which only a point inside of something
+/// sees, or end within rounding of their origin. A dark open cavity shows fronts at a distance.
+/// Returns the number of rays cast. Not for several threads at a time.
+std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directions,
+                             std::vector<std::uint8_t>& buried);
 
 /// How to fill in rows of buried vertices, made once and applied to any field over the vertices.
 /// Vertices with equal position and normal (seams of texture coordinates) count as one.

@@ -56,6 +56,7 @@ class DiffuseBake {
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
         coefficient_count_(sh::row_size(options.band_count)),
         checkpoint_(options.checkpoint, checkpoint_key(scene, options)) {
+    if (options.shadowed) index_.shadow_tree();
     stats_.build_seconds = watch_.seconds();
     signal_.band_count = options.band_count;
     signal_.channel_count = choose_channel_count(scene, options.channels, options.bounce_count > 0);
@@ -120,6 +121,8 @@ class DiffuseBake {
     });
     for (std::size_t v = 0; v < index_.vertex_count(); ++v) copy_to_channels(v);
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    stats_.rays_cast += confirm_buried(index_, directions_, buried_);
+    index_.drop_shadow_tree();
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
   }
@@ -131,7 +134,7 @@ class DiffuseBake {
       const std::size_t vertex = index_.vertex_order()[i];
       hemisphere.trace(vertex);
       find_irradiance(vertex, hemisphere, basis, sum);
-      buried_[vertex] = is_buried(hemisphere, index_.magnitude(vertex));
+      buried_[vertex] = sees_nothing(hemisphere);
     }
     return hemisphere.rays_cast();
   }

@@ -28,20 +28,27 @@ Imath::M33d random_rotation(std::uint64_t seed) {
           2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
 
-constexpr std::size_t kGroup = 16;  // directions of a packet
+struct Placed {
+  Vec3 direction;
+  ray::CubePlace place;
+};
 
-/// Sorts so that runs of kGroup, 2 kGroup, 4 kGroup … are compact: halves of halves, each cut
-/// across its longest side.
-void sort_compactly(std::span<Vec3> set) {
-  if (set.size() <= kGroup) return;
-  Imath::Box3f box;
-  for (const Vec3& d : set) box.extendBy(d);
-  const auto axis = static_cast<int>(box.majorAxis());
-  const std::size_t half = (set.size() / kGroup + 1) / 2 * kGroup;
+/// Sorts directions of one face so that beams, pairs of beams, fours … are compact: halves of
+/// halves, each cut across its longest side.
+void sort_compactly(std::span<Placed> set) {
+  constexpr std::size_t kLanes = ray::kBeamLanes;
+  if (set.size() <= kLanes) return;
+  Imath::Box2f box;
+  for (const Placed& d : set) box.extendBy({d.place.u, d.place.v});
+  const bool along_u = box.size().x >= box.size().y;
+  const std::size_t half = (set.size() / kLanes + 1) / 2 * kLanes;
   std::nth_element(set.begin(), set.begin() + static_cast<std::ptrdiff_t>(half), set.end(),
-                   [&](const Vec3& a, const Vec3& b) {
-                     return std::pair(a[axis], a[(axis + 1) % 3]) <
-                            std::pair(b[axis], b[(axis + 1) % 3]);
+                   [&](const Placed& a, const Placed& b) {
+                     const auto key = [&](const Placed& d) {
+                       return along_u ? std::pair(d.place.u, d.place.v)
+                                      : std::pair(d.place.v, d.place.u);
+                     };
+                     return key(a) < key(b);
                    });
   sort_compactly(set.first(half));
   sort_compactly(set.subspan(half));
@@ -51,22 +58,29 @@ void sort_compactly(std::span<Vec3> set) {
 
 Directions make_directions(std::size_t count, std::uint64_t seed) {
   const Imath::M33d rotation = random_rotation(seed);
-  std::vector<Vec3> set(count);
+  std::vector<Placed> set(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
     const double r = std::sqrt(1.0 - z * z);
     double turns = static_cast<double>(i) / std::numbers::phi;
     turns -= std::floor(turns);
     const double phi = 2.0 * std::numbers::pi * turns;
-    set[i] = Vec3((Vec3d(r * std::cos(phi), r * std::sin(phi), z) * rotation).normalized());
+    const Vec3 d((Vec3d(r * std::cos(phi), r * std::sin(phi), z) * rotation).normalized());
+    set[i] = {d, ray::cube_place(d)};
   }
-  sort_compactly(set);
+  std::stable_sort(set.begin(), set.end(),
+                   [](const Placed& a, const Placed& b) { return a.place.face < b.place.face; });
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    while (end < count && set[end].place.face == set[begin].place.face) ++end;
+    sort_compactly(std::span(set).subspan(begin, end - begin));
+  }
   Directions directions;
-  for (const Vec3& d : set) {
-    directions.x.push_back(d.x);
-    directions.y.push_back(d.y);
-    directions.z.push_back(d.z);
+  for (const Placed& placed : set) {
+    directions.x.push_back(placed.direction.x);
+    directions.y.push_back(placed.direction.y);
+    directions.z.push_back(placed.direction.z);
   }
+  directions.beams = ray::make_beams({directions.x, directions.y, directions.z});
   return directions;
 }
 

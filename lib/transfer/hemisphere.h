@@ -20,10 +20,10 @@ class Hemisphere {
   /// Casts a shadow ray in each direction above the vertex's horizon.
   void trace(std::size_t vertex);
   /// Those that are blocked: direction number and cosine, in the order of the directions.
-  std::span<const WeightedRow> blocked() const { return {blocked_.data(), blocked_count_}; }
+  std::span<const WeightedRow> blocked() const { return blocked_; }
   /// The others.
   std::span<const WeightedRow> visible();
-  std::size_t visible_count() const { return above_count_ - blocked_count_; }
+  std::size_t visible_count() const { return above_count_ - blocked_.size(); }
 
   /// Closest hits of the blocked rays of the vertex last traced, parallel to blocked(). Whether
   /// anything is hit is much faster to find out first. kNoHit where the two disagree, along edges.
@@ -33,21 +33,21 @@ class Hemisphere {
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
-  /// Sets origin_, and cosines_ and above_ as find_above does; counts the rays to be cast.
+  /// Sets origin_ and normal_, cosines_ of all directions and above_ to those above the horizon;
+  /// returns the number of these and counts them as rays.
   std::size_t aim(std::size_t vertex);
-  /// Fills cosines_ of all directions and above_ with those above the horizon; returns their
-  /// number.
-  std::size_t find_above(const Vec3& normal);
+  template <class Choose>
+  void list_rows(const Choose& choose, std::vector<WeightedRow>& rows) const;
 
   const SceneIndex& index_;
   const Directions& directions_;
-  Vec3 origin_;
+  Vec3 origin_, normal_;
+  std::vector<ray::BeamLanes> lanes_;  ///< of the vertex last given to trace
   std::vector<float> cosines_;
   std::vector<std::uint32_t> above_;
   std::vector<ray::Ray> rays_;
   std::vector<WeightedRow> blocked_, visible_;
-  std::size_t above_count_ = 0, blocked_count_ = 0;
-  std::vector<std::uint8_t> occluded_;
+  std::size_t above_count_ = 0;
   std::vector<ray::Hit> hits_;
   std::uint64_t rays_cast_ = 0;
 };

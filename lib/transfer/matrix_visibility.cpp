@@ -56,10 +56,11 @@ class VisibilityPass {
       }
       progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
     });
+    const std::uint64_t confirming_rays = confirm_buried(index_, directions_, buried_);
     const BuriedRepair repair(index_, buried_);
     repair.apply(rows_.data(), count_);
     fill_stats(repair);
-    stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), confirming_rays);
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
     return {std::move(rows_), repair.stand_ins(index_.vertex_count())};
@@ -93,7 +94,7 @@ class VisibilityPass {
       std::fill(sum.begin(), sum.end(), 0.0f);
       add_weighted_rows(blocked, basis.data(), sum.size(), sum.data());
       for (std::size_t k = 0; k < count_; ++k) row[k] -= sum[k];
-      buried_[vertex] = is_buried(hemisphere, index_.magnitude(vertex));
+      buried_[vertex] = sees_nothing(hemisphere);
     }
     return hemisphere.rays_cast();
   }

@@ -34,6 +34,7 @@ Reflection::Reflection(const SceneIndex& index, Directions directions, int chann
       room_(static_cast<std::ptrdiff_t>(hit_bytes / sizeof(PackedHit))) {}
 
 std::uint64_t Reflection::trace(Progress& progress) {
+  index_.engine();
   std::vector<std::uint64_t> rays(blocks_.size());
   parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
     if (room_ <= 0) return;

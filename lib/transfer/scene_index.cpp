@@ -47,19 +47,33 @@ SceneIndex::SceneIndex(const mesh::Scene& scene)
   }
   if (vertex_count() > 0) centre_ = box.min * 0.5f + box.max * 0.5f;
 
-  std::vector<Vec3> positions(vertex_count());
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = position(i);
-  std::vector<std::uint32_t> indices;
-  indices.reserve(3 * triangle_count());
-  for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-    for (std::uint32_t i : scene.primitives[p].mesh.indices) {
-      indices.push_back(i + static_cast<std::uint32_t>(vertex_offsets_[p]));
-    }
-  }
-  engine_ = ray::make_embree_engine({positions, indices});
-  vertex_order_ = spatial_order(positions);
+  const TriangleList triangles = triangle_list();
+  ray::check_triangles(triangles.view());
+  vertex_order_ = spatial_order(triangles.positions);
+  find_ray_origins(triangles.positions, triangles.indices);
+}
 
-  find_ray_origins(positions, indices);
+SceneIndex::TriangleList SceneIndex::triangle_list() const {
+  TriangleList list;
+  list.positions.reserve(vertex_count());
+  list.indices.reserve(3 * triangle_count());
+  for (const mesh::Primitive& primitive : scene_.primitives) {
+    const auto offset = static_cast<std::uint32_t>(list.positions.size());
+    for (const Vec3& p : primitive.mesh.positions) list.positions.push_back(p - centre_);
+    for (std::uint32_t i : primitive.mesh.indices) list.indices.push_back(i + offset);
+  }
+  return list;
+}
+
+const ray::Engine& SceneIndex::engine() const {
+  std::call_once(engine_once_, [&] { engine_ = ray::make_embree_engine(triangle_list().view()); });
+  return *engine_;
+}
+
+const ray::ShadowTree& SceneIndex::shadow_tree() const {
+  std::call_once(shadow_tree_once_,
+                 [&] { shadow_tree_ = std::make_unique<ray::ShadowTree>(triangle_list().view()); });
+  return *shadow_tree_;
 }
 
 void SceneIndex::find_ray_origins(std::span<const Vec3> positions,

@@ -1,21 +1,23 @@
-// A scene's vertices and triangles numbered through, and its ray engine.
+// A scene's vertices and triangles numbered through, and what traces rays among them.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "mesh/scene.h"
 #include "ray/engine.h"
+#include "ray/shadow_tree.h"
 
 namespace prt::transfer {
 
 class SceneIndex {
  public:
-  /// Builds the ray engine. Throws Error (bad_input) on numbers that are not finite, Error (failed)
-  /// on more than 2^32 - 2 vertices or triangles. The scene must outlive this.
+  /// Throws Error (bad_input) on numbers that are not finite or too large to be traced, Error
+  /// (failed) on more than 2^32 - 2 vertices or triangles. The scene must outlive this.
   explicit SceneIndex(const mesh::Scene& scene);
 
   struct Place {
@@ -26,7 +28,12 @@ class SceneIndex {
   Place triangle_place(std::size_t triangle) const { return place(triangle_offsets_, triangle); }
 
   const mesh::Scene& scene() const { return scene_; }
-  const ray::Engine& engine() const { return *engine_; }
+  /// For hits; built when first asked for, which threads should not be the first to do.
+  const ray::Engine& engine() const;
+  /// For shadow rays; built in the same way.
+  const ray::ShadowTree& shadow_tree() const;
+  /// Gives the shadow tree's memory back; there is none from then on.
+  void drop_shadow_tree() { shadow_tree_.reset(); }
   std::size_t vertex_count() const { return vertex_offsets_.back(); }
   std::size_t triangle_count() const { return triangle_offsets_.back(); }
   const Vec3& normal(std::size_t vertex) const;
@@ -50,13 +57,23 @@ class SceneIndex {
   void share_between_equals(std::span<const Vec3> positions, std::vector<Vec4>& inward);
   static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
 
+  struct TriangleList {
+    std::vector<Vec3> positions;  ///< relative to the centre
+    std::vector<std::uint32_t> indices;
+
+    ray::Triangles view() const { return {positions, indices}; }
+  };
+  TriangleList triangle_list() const;
+
   const mesh::Scene& scene_;
   std::vector<std::size_t> vertex_offsets_, triangle_offsets_;
   Vec3 centre_{0.0f};
   std::vector<float> magnitudes_;
   std::vector<Vec3> ray_origins_;
   std::vector<std::uint32_t> vertex_order_;
-  std::unique_ptr<ray::Engine> engine_;
+  mutable std::once_flag engine_once_, shadow_tree_once_;
+  mutable std::unique_ptr<ray::Engine> engine_;
+  mutable std::unique_ptr<ray::ShadowTree> shadow_tree_;
 };
 
 }  // namespace prt::transfer

@@ -167,35 +167,6 @@ TEST(EmbreeEngine, ResultsDoNotDependOnBatchSize) {
   }
 }
 
-TEST(EmbreeEngine, RaysFromOneOriginAreTheSameRays) {
-  const Soup soup = random_soup(400, 0.3f, 3);
-  const auto engine = make_embree_engine(soup.triangles());
-  Pcg32 random(5);
-  std::vector<float> x, y, z;
-  for (int i = 0; i < 500; ++i) {
-    const Vec3 d = random_direction(random);
-    x.push_back(d.x), y.push_back(d.y), z.push_back(d.z);
-  }
-  const Vec3 origin(0.1f, -0.2f, 0.3f);
-  for (std::size_t count : {0, 1, 15, 16, 17, 200}) {
-    std::vector<std::uint32_t> chosen(count);
-    std::vector<Ray> rays(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      chosen[i] = random.below(500);
-      rays[i].origin = origin;
-      rays[i].direction = Vec3(x[chosen[i]], y[chosen[i]], z[chosen[i]]);
-    }
-    std::vector<std::uint8_t> expected(count), found(count + 1, 2);
-    engine->occluded(rays, expected);
-    expected.push_back(2);  // what is not asked for stays
-    engine->occluded_from(origin, {x, y, z}, chosen, found);
-    EXPECT_EQ(found, expected);
-    if (count < 200) continue;
-    EXPECT_GT(std::count(found.begin(), found.end(), 0), 10);
-    EXPECT_GT(std::count(found.begin(), found.end(), 1), 10);
-  }
-}
-
 TEST(EmbreeEngine, EmptyBatchAndEmptySceneHitNothing) {
   const auto engine = make_embree_engine({});
   engine->closest_hit({}, {});

@@ -1,0 +1,61 @@
+// What the kernels of the shadow tree (shadow_kernel.h) work on: plain arrays, no other header, for
+// they are compiled with other flags than the rest of the program.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace prt::ray {
+
+constexpr int kBeamLanes = 16;
+
+/// Up to 16 neighbouring directions of a list whose largest coordinate is the same one, of the
+/// same sign. Axis m is that of the largest coordinate, p and q the next two in cyclic order.
+struct Beam {
+  float x[kBeamLanes], y[kBeamLanes], z[kBeamLanes];  ///< unused lanes repeat the last used
+  float u[kBeamLanes], v[kBeamLanes];                 ///< d_p / |d_m|, d_q / |d_m|
+  float u_min, u_max, v_min, v_max;
+  std::uint32_t first;  ///< number in the list of the direction in lane 0; the others follow
+  std::uint16_t lane_count;
+  std::uint8_t axis;  ///< m
+  bool negative;      ///< d_m < 0
+};
+
+/// Lanes of a beam, a bit each.
+struct BeamLanes {
+  std::uint16_t above;    ///< directions above the horizon, those that are traced
+  std::uint16_t blocked;  ///< of these, those along which something lies
+};
+
+constexpr int kNodeWidth = 16;
+
+/// Boxes of up to 16 children. Those of unused slots are inside out and infinite.
+struct alignas(64) ShadowNode {
+  float bounds[6][kNodeWidth];              ///< lower x, y, z, upper x, y, z
+  std::uint32_t child[kNodeWidth];          ///< a node, or the first triangle of a leaf
+  std::uint8_t triangle_count[kNodeWidth];  ///< 1 to 16 in a leaf, 0 for a node
+};
+
+/// The leaf from triangle k on starts at triangles[9 k]: nine rows of as many floats as it has
+/// triangles, the coordinates x, y, z of their corners 0, 1, 2. Loads read up to 15 floats past it.
+struct ShadowTreeView {
+  const ShadowNode* nodes;
+  std::uint32_t root;
+  const float* triangles;
+};
+
+struct ShadowQuery {
+  float origin[3], normal[3];
+  float margin;  ///< of the nodes' boxes, more than any rounding of their tests
+};
+
+constexpr int kMaxTreeDepth = 48;
+
+void trace_shadows_avx512(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+                          std::size_t beam_count, BeamLanes* lanes);
+void trace_shadows_avx2(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+                        std::size_t beam_count, BeamLanes* lanes);
+void trace_shadows_baseline(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+                            std::size_t beam_count, BeamLanes* lanes);
+
+}  // namespace prt::ray
