@@ -59,11 +59,13 @@ std::vector<Node> buried_graph(const SceneIndex& index, const std::vector<std::u
   return nodes;
 }
 
-/// Whether most of what the vertex last traced sees are backs of faces or at its own place.
-bool is_inside(Hemisphere& hemisphere, float magnitude) {
+/// Whether most of what a vertex sees are backs of faces or at its own place.
+bool is_inside(Hemisphere& hemisphere, std::size_t vertex, float magnitude) {
+  hemisphere.trace(vertex);
   const std::span<const ray::Hit> hits = hemisphere.hits();
   float inside = 0.0f, total = 0.0f;
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].triangle == ray::kNoHit) continue;
     const float cosine = hemisphere.blocked()[i].weight;
     total += cosine;
     if (hits[i].back_face || hits[i].t <= kContact * magnitude) inside += cosine;
@@ -90,8 +92,8 @@ std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directio
   parallel_for(suspects.size(), kSuspectBlock, [&](std::size_t begin, std::size_t end) {
     Hemisphere hemisphere(index, directions);
     for (std::size_t i = begin; i < end; ++i) {
-      hemisphere.trace(suspects[i]);
-      buried[suspects[i]] = is_inside(hemisphere, index.magnitude(suspects[i]));
+      const std::uint32_t v = suspects[i];
+      buried[v] = is_inside(hemisphere, v, index.magnitude(v));
     }
     rays[begin / kSuspectBlock] = hemisphere.rays_cast();
   });

@@ -22,6 +22,9 @@ namespace prt::transfer {
 
 namespace {
 
+// Larger scenes give the shadow tree back before the engine's tree is built.
+constexpr std::size_t kBothTreesVertexCount = 750'000;
+
 void check_options(const DiffuseOptions& options) {
   check_range("band count", options.band_count, 1, sh::kMaxBandCount);
   check_range("ray count", options.ray_count, 1, kMaxRayCount);
@@ -121,8 +124,8 @@ class DiffuseBake {
     });
     for (std::size_t v = 0; v < index_.vertex_count(); ++v) copy_to_channels(v);
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    if (index_.vertex_count() > kBothTreesVertexCount) index_.drop_shadow_tree();
     stats_.rays_cast += confirm_buried(index_, directions_, buried_);
-    index_.drop_shadow_tree();
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
   }
@@ -168,12 +171,14 @@ class DiffuseBake {
     return blocked;
   }
 
-  /// The larger the model, the less of the 500 MB that diffuse.h promises its tree leaves for hits.
+  /// The larger the model, the less of the 500 MB that diffuse.h promises its trees leave for hits.
   std::size_t hit_bytes() const {
-    constexpr std::size_t kTreeBytesPerVertex = 400, kShared = std::size_t{416} << 20,
-                          kLeast = std::size_t{16} << 20;
-    const std::size_t tree = kTreeBytesPerVertex * index_.vertex_count();
-    return std::min(options_.hit_bytes, tree + kLeast < kShared ? kShared - tree : kLeast);
+    constexpr std::size_t kTreeBytesPerVertex = 400, kShadowTreeBytesPerVertex = 100,
+                          kShared = std::size_t{416} << 20, kLeast = std::size_t{16} << 20;
+    const bool both = index_.vertex_count() <= kBothTreesVertexCount;
+    const std::size_t trees =
+        (kTreeBytesPerVertex + (both ? kShadowTreeBytesPerVertex : 0)) * index_.vertex_count();
+    return std::min(options_.hit_bytes, trees + kLeast < kShared ? kShared - trees : kLeast);
   }
 
   /// Bounces act on each coefficient alone, so they go through as many at a time as memory allows.

@@ -59,7 +59,7 @@ struct DiffuseStats {
   std::size_t resumed_vertex_count = 0;     ///< traced by an interrupted run before this one
   std::uint64_t rays_cast = 0;              ///< occlusion and closest hit, in this run
   double rays_per_second = 0.0;             ///< of the shadow pass
-  double build_seconds = 0.0;               ///< the ray engine's tree, the order of vertices
+  double build_seconds = 0.0;               ///< the shadow tree, the order of vertices
   double trace_seconds = 0.0;               ///< the shadow pass
   double bounce_seconds = 0.0;              ///< rays of the bounces, and gathering
   double matrix_seconds = 0.0;              ///< matrices without bounces
@@ -67,8 +67,9 @@ struct DiffuseStats {
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.
 /// Beyond input and output, memory stays under 500 MB up to a million vertices; the ray engine's
-/// tree, some 350 bytes a vertex, is what grows from there. Throws Error (usage)
-/// on options out of range and Error (bad_input) on positions or normals that are not finite.
+/// tree, some 350 bytes a vertex (of shadow rays alone 100), is what grows from there. Throws Error
+/// (usage) on options out of range and Error (bad_input) on positions or normals that are not
+/// finite.
 signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
                                        DiffuseStats& stats);
 

@@ -8,16 +8,19 @@ Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
     : index_(index), directions_(directions), origin_(0.0f), normal_(0.0f) {
   const std::size_t count = directions.count();
   lanes_.resize(directions.beams.size());
-  cosines_.resize(count);
-  above_.resize(count);
   rays_.resize(count);
+  occluded_.resize(count);
   blocked_.reserve(count);
 }
 
 void Hemisphere::trace(std::size_t vertex) {
   origin_ = index_.ray_origin(vertex);
   normal_ = index_.normal(vertex);
-  index_.shadow_tree().trace(origin_, normal_, directions_.beams, lanes_);
+  if (const ray::ShadowTree* tree = index_.shadow_tree()) {
+    tree->trace(origin_, normal_, directions_.beams, lanes_);
+  } else {
+    trace_by_engine();
+  }
   above_count_ = 0;
   for (const ray::BeamLanes& lanes : lanes_) {
     above_count_ += static_cast<std::size_t>(std::popcount(lanes.above));
@@ -44,29 +47,31 @@ void Hemisphere::list_rows(const Choose& choose, std::vector<WeightedRow>& rows)
   }
 }
 
-// The list is made without branches, which would be mispredicted: what does not belong is
-// overwritten.
-std::size_t Hemisphere::aim(std::size_t vertex) {
-  origin_ = index_.ray_origin(vertex);
-  normal_ = index_.normal(vertex);
-  const float *x = directions_.x.data(), *y = directions_.y.data(), *z = directions_.z.data();
-  for (std::size_t d = 0; d < cosines_.size(); ++d) {
-    cosines_[d] = normal_.x * x[d] + normal_.y * y[d] + normal_.z * z[d];
-  }
+void Hemisphere::trace_by_engine() {
   std::size_t count = 0;
-  for (std::size_t d = 0; d < cosines_.size(); ++d) {
-    above_[count] = static_cast<std::uint32_t>(d);
-    count += cosines_[d] > 0.0f;
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    const ray::Beam& beam = directions_.beams[i];
+    lanes_[i] = {};
+    for (unsigned lane = 0; lane < beam.lane_count; ++lane) {
+      const Vec3 direction = directions_[beam.first + lane];
+      if (normal_.dot(direction) <= 0.0f) continue;
+      lanes_[i].above |= static_cast<std::uint16_t>(1u << lane);
+      rays_[count++] = {origin_, 0.0f, direction};
+    }
   }
-  rays_cast_ += count;
-  return count;
+  index_.engine().occluded({rays_.data(), count}, {occluded_.data(), count});
+  count = 0;
+  for (ray::BeamLanes& lanes : lanes_) {
+    for (unsigned above = lanes.above; above != 0; above &= above - 1) {
+      if (occluded_[count++]) lanes.blocked |= static_cast<std::uint16_t>(above & -above);
+    }
+  }
 }
 
 std::span<const ray::Hit> Hemisphere::hits() {
   hits_.resize(blocked_.size());
   for (std::size_t i = 0; i < blocked_.size(); ++i) {
-    rays_[i].origin = origin_;
-    rays_[i].direction = directions_[blocked_[i].row];
+    rays_[i] = {origin_, 0.0f, directions_[blocked_[i].row]};
   }
   index_.engine().closest_hit({rays_.data(), blocked_.size()}, hits_);
   rays_cast_ += blocked_.size();

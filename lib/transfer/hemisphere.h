@@ -17,7 +17,8 @@ class Hemisphere {
  public:
   Hemisphere(const SceneIndex& index, const Directions& directions);
 
-  /// Casts a shadow ray in each direction above the vertex's horizon.
+  /// Casts a shadow ray in each direction above the vertex's horizon. Once the index has given its
+  /// shadow tree back, by its engine, which is slower.
   void trace(std::size_t vertex);
   /// Those that are blocked: direction number and cosine, in the order of the directions.
   std::span<const WeightedRow> blocked() const { return blocked_; }
@@ -33,9 +34,8 @@ class Hemisphere {
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
-  /// Sets origin_ and normal_, cosines_ of all directions and above_ to those above the horizon;
-  /// returns the number of these and counts them as rays.
-  std::size_t aim(std::size_t vertex);
+  /// Sets lanes_, by the ray engine instead of the shadow tree.
+  void trace_by_engine();
   template <class Choose>
   void list_rows(const Choose& choose, std::vector<WeightedRow>& rows) const;
 
@@ -43,12 +43,11 @@ class Hemisphere {
   const Directions& directions_;
   Vec3 origin_, normal_;
   std::vector<ray::BeamLanes> lanes_;  ///< of the vertex last given to trace
-  std::vector<float> cosines_;
-  std::vector<std::uint32_t> above_;
   std::vector<ray::Ray> rays_;
   std::vector<WeightedRow> blocked_, visible_;
   std::size_t above_count_ = 0;
   std::vector<ray::Hit> hits_;
+  std::vector<std::uint8_t> occluded_;
   std::uint64_t rays_cast_ = 0;
 };
 

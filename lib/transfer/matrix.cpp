@@ -105,6 +105,7 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
 // Fields of 0, 1, … bounces, all but the last.
 void MatrixTransfer::bounce(const MatrixOptions& options) {
   const Stopwatch watch;
+  index_->engine();
   const int rays = choose_bounce_ray_count(options.bounce_ray_count, options.ray_count);
   reflection_ = std::make_unique<MatrixReflection>(
       *index_, visibility_, make_directions(2 * static_cast<std::size_t>(rays), options.seed),

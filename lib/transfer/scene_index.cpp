@@ -70,10 +70,15 @@ const ray::Engine& SceneIndex::engine() const {
   return *engine_;
 }
 
-const ray::ShadowTree& SceneIndex::shadow_tree() const {
+const ray::ShadowTree* SceneIndex::shadow_tree() const {
   std::call_once(shadow_tree_once_,
                  [&] { shadow_tree_ = std::make_unique<ray::ShadowTree>(triangle_list().view()); });
-  return *shadow_tree_;
+  return shadow_tree_.get();
+}
+
+void SceneIndex::drop_shadow_tree() {
+  std::call_once(shadow_tree_once_, [] {});
+  shadow_tree_.reset();
 }
 
 void SceneIndex::find_ray_origins(std::span<const Vec3> positions,

@@ -30,10 +30,10 @@ class SceneIndex {
   const mesh::Scene& scene() const { return scene_; }
   /// For hits; built when first asked for, which threads should not be the first to do.
   const ray::Engine& engine() const;
-  /// For shadow rays; built in the same way.
-  const ray::ShadowTree& shadow_tree() const;
-  /// Gives the shadow tree's memory back; there is none from then on.
-  void drop_shadow_tree() { shadow_tree_.reset(); }
+  /// For shadow rays; built in the same way. Null after drop_shadow_tree.
+  const ray::ShadowTree* shadow_tree() const;
+  /// Gives the shadow tree's memory back, some 100 bytes a vertex, for good.
+  void drop_shadow_tree();
   std::size_t vertex_count() const { return vertex_offsets_.back(); }
   std::size_t triangle_count() const { return triangle_offsets_.back(); }
   const Vec3& normal(std::size_t vertex) const;

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "transfer/clamped_cosine.h"
+#include "transfer/hemisphere.h"
 #include "transfer/scenes.h"
 
 namespace prt::transfer {
@@ -188,6 +189,32 @@ TEST(Shadow, RefusesBadOptionsAndBadNormals) {
   EXPECT_EQ(kind_of(scene, {.bounce_count = 1, .shadowed = false}), ErrorKind::usage);
   scene.primitives[0].mesh.normals[2].y = NAN;
   EXPECT_EQ(kind_of(scene, {}), ErrorKind::bad_input);
+}
+
+TEST(Hemisphere, AnswersAlikeWithoutTheShadowTree) {
+  TriangleMesh mesh = sphere(3);
+  for (Vec3& p : mesh.positions) p.y += 1.2f;
+  append(mesh, grid(Vec3(-3, 0, -3), Vec3(0, 0, 6), Vec3(6, 0, 0), 8));
+  const mesh::Scene scene = scene_of(mesh);
+  SceneIndex with(scene), without(scene);
+  with.shadow_tree();
+  without.drop_shadow_tree();
+  const Directions directions = make_directions(1000, 3);
+  Hemisphere fast(with, directions), slow(without, directions);
+  std::size_t blocked_count = 0, difference = 0;
+  for (std::size_t v = 0; v < with.vertex_count(); v += 7) {
+    fast.trace(v);
+    slow.trace(v);
+    blocked_count += fast.blocked().size();
+    for (std::size_t i = 0, k = 0; i < fast.blocked().size(); ++i) {
+      while (k < slow.blocked().size() && slow.blocked()[k].row < fast.blocked()[i].row) ++k;
+      difference += k == slow.blocked().size() || slow.blocked()[k].row != fast.blocked()[i].row;
+    }
+    EXPECT_NEAR(static_cast<double>(fast.visible().size()),
+                static_cast<double>(slow.visible().size()), 1.0);
+  }
+  EXPECT_GT(blocked_count, 1000u);
+  EXPECT_LE(difference, blocked_count / 1000);  // rays along edges
 }
 
 }  // namespace
