@@ -33,7 +33,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option(
          "--plots", options.plots,
          "Folder, made when missing, for pictures (.png) and tables (.csv) of the clusters and, "
-         "with --transfer, of the error and of other encodings")
+         "with "
+         "--transfer or NAME.transfer.exr beside NAME.prt.glb, of the error and of other encodings")
       ->group("Compression error");
   app.add_option("--compare", options.compare, "Two images, the second being the reference")
       ->expected(2)
@@ -133,6 +134,9 @@ int main(int argc, char** argv) {
   add_options(tool.app(), options);
   return tool.run(argc, argv, [&](Report& report) {
     check_usage(options);
+    if (!options.plots.empty() && options.transfer.empty()) {
+      options.transfer = inspect::transfer_beside(options.file);
+    }
     check_files(options, tool.common());
     const bool no_clobber = tool.common().no_clobber;
     inspect::Json json = inspect::Json::object();

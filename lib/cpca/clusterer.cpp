@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "cpca/leading.h"
 #include "cpca/subspace_kernels.h"
 #include "cpca/subspace_update.h"
 
@@ -14,6 +15,8 @@ namespace {
 constexpr std::size_t kPointBlock = 256;
 /// Clusters tried between full passes.
 constexpr std::size_t kNeighbours = 16;
+/// Coordinates that a cluster is first looked at in, where there are at least twice as many.
+constexpr std::size_t kLeading = 32;
 
 }  // namespace
 
@@ -60,19 +63,23 @@ Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
     block_neighbours_.assign(blocks.size() * neighbour_count_, 0);
     block_affinities_.assign(blocks.size() * neighbour_count_, 0.0f);
   }
-  const std::vector<std::uint32_t> before = labels_;
+  if (subspaces_.dimension >= 2 * kLeading) leading_ = find_leading(subspaces_, kLeading);
   std::vector<double> errors_before(blocks.size());
   parallel_for(blocks.size(), 1, [&](std::size_t b, std::size_t) {
     errors_before[b] = classify_block(blocks[b], full, vector_cost, b);
   });
+  leading_.reset();
   if (full) merge_neighbours(blocks);
-  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
-  fill_empty_clusters();
   Pass pass;
-  for (const double error : errors_before) pass.error_before += error;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    pass.error_before += errors_before[b];
+    for (const std::uint32_t p : blocks[b].points)
+      pass.moved_count += labels_[p] != blocks[b].cluster;
+  }
+  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+  pass.moved_count += fill_empty_clusters();
   for (std::size_t p = 0; p < labels_.size(); ++p) {
     pass.error += double{rows_.weight(p)} * double{errors_[p]};
-    pass.moved_count += labels_[p] != before[p];
   }
   std::size_t vectors = 0;
   for (const std::uint32_t used : subspaces_.used) vectors += 1 + used;
@@ -100,7 +107,8 @@ double Clusterer::classify_block(const Block& block, bool full, float vector_cos
                                               .penalties = penalties,
                                               .labels = labels_,
                                               .errors = errors_,
-                                              .affinities = affinities});
+                                              .affinities = affinities,
+                                              .leading = leading_ ? &*leading_ : nullptr});
   if (!full) return error_before;
   std::vector<std::uint32_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -139,20 +147,21 @@ void Clusterer::merge_neighbours(std::span<const Block> blocks) {
   }
 }
 
-void Clusterer::fill_empty_clusters() {
+std::size_t Clusterer::fill_empty_clusters() {
   std::vector<std::size_t> left(subspaces_.cluster_count());
   bool any = false;
   for (std::size_t k = 0; k < left.size(); ++k) {
     left[k] = sorted_.of(k).size();
     any = any || left[k] == 0;
   }
-  if (!any) return;
+  if (!any) return 0;
   std::vector<std::uint32_t> worst(labels_.size());
   std::iota(worst.begin(), worst.end(), 0u);
   std::sort(worst.begin(), worst.end(), [&](std::uint32_t a, std::uint32_t b) {
     return errors_[a] != errors_[b] ? errors_[a] > errors_[b] : a < b;
   });
   auto next = worst.begin();
+  std::size_t filled_count = 0;
   for (std::size_t k = 0; k < left.size(); ++k) {
     if (left[k] != 0) continue;
     while (next != worst.end() && left[labels_[*next]] <= 1) ++next;
@@ -160,14 +169,18 @@ void Clusterer::fill_empty_clusters() {
     --left[labels_[*next]];
     labels_[*next] = static_cast<std::uint32_t>(k);
     subspaces_.used[k] = subspaces_.held[k] = 0;
-    std::copy_n(rows_.row(*next), subspaces_.dimension, subspaces_.mean(k));
+    for (std::size_t d = 0; d < subspaces_.dimension; ++d) {
+      subspaces_.mean(k)[d] = rows_.at(*next, d);
+    }
     errors_[*next++] = 0.0f;
+    ++filled_count;
     // Its neighbours are those of every cluster until a full pass.
     for (std::size_t i = 0; i < neighbour_count_; ++i) {
       neighbours_[k * neighbour_count_ + i] = static_cast<std::uint32_t>(k);
     }
   }
   sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+  return filled_count;
 }
 
 void Clusterer::update(std::span<const std::uint32_t> used, std::uint32_t held, int steps) {

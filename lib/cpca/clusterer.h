@@ -3,10 +3,12 @@
 //
 // Most clusters are nowhere near most points. A full pass measures the error of every point in
 // every cluster and notes which clusters are near the points of each; the passes after it try only
-// those. As a point moves only to where its error is less, the error falls all the same.
+// those. As a point moves only to where its error is less, the error falls all the same. Of the
+// clusters that are tried, the first coordinates (cpca/leading.h) rule out most.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -56,10 +58,12 @@ class Clusterer {
   std::vector<Block> make_blocks() const;
   double classify_block(const Block& block, bool full, float vector_cost, std::size_t number);
   void merge_neighbours(std::span<const Block> blocks);
-  void fill_empty_clusters();
+  /// Returns how many there were.
+  std::size_t fill_empty_clusters();
 
   Rows rows_;
   Subspaces subspaces_;
+  std::optional<Subspaces> leading_;  ///< during a pass
   std::vector<std::uint32_t> labels_, all_clusters_;
   std::vector<float> errors_;
   PointsByCluster sorted_;

@@ -4,21 +4,32 @@
 
 namespace prt::cpca {
 
-PointsByCluster sort_by_cluster(std::span<const std::uint32_t> points,
-                                std::span<const std::uint32_t> labels, std::size_t cluster_count) {
+namespace {
+
+/// Counting sort of the points number(0), number(1), … number(count - 1).
+template <class Number>
+PointsByCluster sort(std::size_t count, std::span<const std::uint32_t> labels,
+                     std::size_t cluster_count, Number number) {
   PointsByCluster sorted{.offsets = std::vector<std::size_t>(cluster_count + 1),
-                         .points = std::vector<std::uint32_t>(points.size())};
-  for (std::uint32_t point : points) ++sorted.offsets[labels[point] + 1];
+                         .points = std::vector<std::uint32_t>(count)};
+  for (std::size_t i = 0; i < count; ++i) ++sorted.offsets[labels[number(i)] + 1];
   std::partial_sum(sorted.offsets.begin(), sorted.offsets.end(), sorted.offsets.begin());
   std::vector<std::size_t> next = sorted.offsets;
-  for (std::uint32_t point : points) sorted.points[next[labels[point]]++] = point;
+  for (std::size_t i = 0; i < count; ++i) {
+    sorted.points[next[labels[number(i)]]++] = static_cast<std::uint32_t>(number(i));
+  }
   return sorted;
 }
 
+}  // namespace
+
+PointsByCluster sort_by_cluster(std::span<const std::uint32_t> points,
+                                std::span<const std::uint32_t> labels, std::size_t cluster_count) {
+  return sort(points.size(), labels, cluster_count, [&](std::size_t i) { return points[i]; });
+}
+
 PointsByCluster sort_by_cluster(std::span<const std::uint32_t> labels, std::size_t cluster_count) {
-  std::vector<std::uint32_t> all(labels.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return sort_by_cluster(all, labels, cluster_count);
+  return sort(labels.size(), labels, cluster_count, [](std::size_t i) { return i; });
 }
 
 }  // namespace prt::cpca

@@ -73,4 +73,12 @@ nlohmann::ordered_json to_json(const Coherence& coherence, const CoherenceOption
           {"squared_error_reclassified", coherence.final_error}};
 }
 
+nlohmann::ordered_json overdraw_to_json(std::span<const std::uint32_t> indices,
+                                        const Encoding& encoding) {
+  const std::size_t sent = sent_triangle_count(indices, encoding.cluster_of_point);
+  return {{"overdraw_initial", overdraw(sent, indices.size() / 3)},
+          {"triangle_count", indices.size() / 3},
+          {"sent_triangles_initial", sent}};
+}
+
 }  // namespace prt::cpca

@@ -39,4 +39,9 @@ Coherence make_coherent(std::span<const float> signal, std::span<const std::uint
 /// Keys of docs/tools/prt-compress.md.
 nlohmann::ordered_json to_json(const Coherence& coherence, const CoherenceOptions& options);
 
+/// Those of them that describe an encoding as it is: overdraw_initial, triangle_count,
+/// sent_triangles_initial.
+nlohmann::ordered_json overdraw_to_json(std::span<const std::uint32_t> indices,
+                                        const Encoding& encoding);
+
 }  // namespace prt::cpca

@@ -37,7 +37,7 @@ struct Encoded {
   Encoding encoding;
   int iterations = 0;         ///< done
   std::vector<Level> levels;  ///< of iterative encoders
-  double flops = 0.0;         ///< of the products of points with means and vectors
+  double flops = 0.0;         ///< of the products of points with means, vectors and one another
   std::vector<Stage> stages;
 };
 

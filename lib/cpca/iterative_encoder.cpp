@@ -1,5 +1,7 @@
 #include "cpca/iterative_encoder.h"
 
+#include <algorithm>
+
 #include "cpca/fit.h"
 #include "cpca/seeding.h"
 #include "cpca/stage_clock.h"
@@ -10,7 +12,8 @@ namespace {
 
 /// Power steps after a classification, and for clusters whose vectors start from nothing.
 constexpr int kSteps = 1, kFirstSteps = 8;
-/// Iterations in all coordinates at the end, where the others knew the first axes only.
+/// Of the last iterations, those in all coordinates where the others knew the first axes only: at
+/// most half.
 constexpr int kLastIterations = 4;
 
 }  // namespace
@@ -34,15 +37,18 @@ std::vector<Level> IterativeEncoder::run() {
   for (int count = 0; count <= options_.component_count; ++count) {
     if (count > 0) start_level(count, levels.back().errors.back());
     levels.push_back({.component_count = count, .errors = {}});
-    run_level(levels.back());
+    const bool is_refined = count == options_.component_count && space_.has_axes();
+    const int last = is_refined ? std::min(kLastIterations, options_.iterations / 2) : 0;
+    run_level(levels.back(), options_.iterations - last);
+    if (last > 0) refine(levels.back(), last);
   }
-  if (space_.use_signal()) refine(levels.back());
   return levels;
 }
 
-void IterativeEncoder::refine(Level& level) {
+void IterativeEncoder::refine(Level& level, int iterations) {
+  space_.use_signal();
   move_to_space(level.component_count);
-  for (int i = 0; i < kLastIterations; ++i) {
+  for (int i = 0; i < iterations; ++i) {
     level.errors.push_back(clusterer_.classify(false).error);
     update(level.component_count, kSteps);
   }
@@ -70,8 +76,8 @@ void IterativeEncoder::move_to_space(int count) {
   update(count, kFirstSteps);
 }
 
-void IterativeEncoder::run_level(Level& level) {
-  const int count = level.component_count, last = options_.iterations - 1;
+void IterativeEncoder::run_level(Level& level, int iterations) {
+  const int count = level.component_count, last = iterations - 1;
   bool settled = false;  // nothing moved in the last pass
   for (int i = 0; i <= last; ++i) {
     // The first pass of all knows no neighbours, not even those of its own result.
@@ -90,17 +96,21 @@ Encoded encode_iterative(std::span<const float> signal, int dimension, const Opt
   check_options(options);
   check_signal(signal, dimension, options);
   Encoded encoded;
+  std::vector<std::uint32_t> labels;
   StageClock clock(encoded.stages);
-  IterativeEncoder encoder(signal, static_cast<std::size_t>(dimension), options,
-                           static_cast<std::size_t>(options.component_count) + 1);
-  clock.finish("seeding");
-  encoded.levels = encoder.run();
+  {  // what the encoder holds is gone before weights are made
+    IterativeEncoder encoder(signal, static_cast<std::size_t>(dimension), options,
+                             static_cast<std::size_t>(options.component_count) + 1);
+    clock.finish("seeding");
+    encoded.levels = encoder.run();
+    encoded.flops = encoder.clusterer().flops();
+    labels = encoder.clusterer().labels();
+  }
   for (const Level& level : encoded.levels) {
     encoded.iterations += static_cast<int>(level.errors.size());
   }
-  encoded.flops = encoder.clusterer().flops();
   clock.finish("clustering");
-  encoded.encoding = fit(signal, dimension, encoder.clusterer().labels(), options);
+  encoded.encoding = fit(signal, dimension, std::move(labels), options);
   clock.finish("components");
   return encoded;
 }

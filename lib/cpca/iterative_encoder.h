@@ -28,8 +28,9 @@ class IterativeEncoder {
  private:
   void update(int count, int steps);
   void start_level(int count, double error);
-  void run_level(Level& level);
-  void refine(Level& level);
+  void run_level(Level& level, int iterations);
+  /// More of them in all coordinates.
+  void refine(Level& level, int iterations);
   void move_to_space(int count);
 
   const Options& options_;

@@ -1,6 +1,7 @@
 #include "cpca/principal_axes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "linalg/decompose.h"
@@ -13,6 +14,8 @@ namespace {
 using linalg::Transpose;
 
 constexpr std::size_t kBlock = 512, kColumnBlock = 96;
+/// Of the registers that kernels read rows with, at most.
+constexpr std::size_t kLanes = 16;
 /// Points of the sample for each coefficient.
 constexpr std::size_t kSampleShare = 12;
 
@@ -70,29 +73,67 @@ std::vector<float> find_axes(std::span<const float> rows, std::size_t n, std::si
   return {pairs.vectors.begin(), pairs.vectors.end()};
 }
 
-/// Turns rows (from `begin` on) of the signal, and adds their squares to `squares`: of the whole
-/// row, then of each coordinate.
-void turn_block(PrincipalAxes& axes, std::span<const float> signal, std::size_t begin,
-                std::size_t end, std::span<const float> weights, double* squares) {
-  const std::size_t n = axes.mean.size(), count = axes.axes.size() / n, m = end - begin;
+/// Some points of the signal in the coordinates of the axes, and ‖x - mean‖² of each.
+struct Turned {
+  std::vector<float> rows;
+  std::vector<double> squares;
+};
+
+Turned turn(const PrincipalAxes& axes, std::span<const float> points) {
+  const std::size_t n = axes.mean.size(), count = axes.axes.size() / n, m = points.size() / n;
+  Turned turned{std::vector<float>(m * axes.stride), std::vector<double>(m)};
   std::vector<float> centred(m * n);
   for (std::size_t p = 0; p < m; ++p) {
-    const float* x = &signal[(begin + p) * n];
-    double square = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      centred[p * n + i] = x[i] - axes.mean[i];
-      square += double{centred[p * n + i]} * double{centred[p * n + i]};
+      const float y = points[p * n + i] - axes.mean[i];
+      centred[p * n + i] = y;
+      turned.squares[p] += double{y} * double{y};
     }
-    squares[0] += square * (weights.empty() ? 1.0 : double{weights[begin + p]});
   }
-  float* rows = &axes.rows[begin * count];
   linalg::gemm(1.0f, {centred.data(), m, n}, Transpose::no, {axes.axes.data(), count, n},
-               Transpose::yes, 0.0f, {rows, m, count});
-  for (std::size_t p = 0; p < m; ++p) {
+               Transpose::yes, 0.0f, {turned.rows.data(), m, count, axes.stride});
+  return turned;
+}
+
+/// The greatest number of each coordinate becomes the greatest that 16 bits hold.
+std::vector<float> find_scales(const PrincipalAxes& axes, std::span<const float> signal) {
+  const std::size_t n = axes.mean.size(), point_count = signal.size() / n;
+  std::vector<float> greatest(block_count(point_count, kBlock) * axes.stride);
+  parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+    float* most = &greatest[begin / kBlock * axes.stride];
+    const Turned turned = turn(axes, signal.subspan(begin * n, (end - begin) * n));
+    for (std::size_t p = 0; p < end - begin; ++p) {
+      const float* row = &turned.rows[p * axes.stride];
+      for (std::size_t i = 0; i < axes.stride; ++i) most[i] = std::max(most[i], std::abs(row[i]));
+    }
+  });
+  std::vector<float> scales(axes.stride);
+  for (std::size_t i = 0; i < greatest.size(); ++i) {
+    float& scale = scales[i % axes.stride];
+    scale = std::max(scale, greatest[i] / 32767.0f);
+  }
+  return scales;
+}
+
+/// Rounds the coordinates of the points from `begin` on. Adds to `squares` those of the
+/// whole points, then how much of them each coordinate gives.
+void round_rows(PrincipalAxes& axes, const Turned& turned, std::size_t begin,
+                std::span<const float> weights, double* squares) {
+  std::vector<float> inverse(axes.stride);
+  for (std::size_t i = 0; i < axes.stride; ++i) {
+    inverse[i] = axes.scales[i] > 0.0f ? 1.0f / axes.scales[i] : 0.0f;
+  }
+  for (std::size_t p = 0; p < turned.squares.size(); ++p) {
     const double weight = weights.empty() ? 1.0 : double{weights[begin + p]};
-    for (std::size_t i = 0; i < count; ++i) {
-      const double value = rows[p * count + i];
-      squares[1 + i] += weight * value * value;
+    squares[0] += weight * turned.squares[p];
+    const float* from = &turned.rows[p * axes.stride];
+    std::int16_t* to = &axes.rows[(begin + p) * axes.stride];
+    for (std::size_t i = 0; i < axes.stride; ++i) {
+      const float x = from[i] * inverse[i];
+      to[i] =
+          static_cast<std::int16_t>(std::clamp(x + std::copysign(0.5f, x), -32767.0f, 32767.0f));
+      const double rest = double{from[i]} - double{static_cast<float>(to[i]) * axes.scales[i]};
+      squares[1 + i] += weight * (double{from[i]} * double{from[i]} - rest * rest);
     }
   }
 }
@@ -106,13 +147,16 @@ PrincipalAxes find_principal_axes(std::span<const float> signal, std::size_t dim
   axes.mean = mean_of(signal, dimension);
   const std::size_t step = std::max<std::size_t>(1, point_count / (kSampleShare * dimension));
   axes.axes = find_axes(draw_rows(signal, axes.mean, step), dimension, count);
-  axes.rows.resize(point_count * count);
-  std::vector<double> squares(block_count(point_count, kBlock) * (1 + count));
+  axes.stride = (count + kLanes - 1) / kLanes * kLanes;
+  axes.scales = find_scales(axes, signal);
+  axes.rows.resize(point_count * axes.stride);
+  const std::size_t width = 1 + axes.stride;
+  std::vector<double> squares(block_count(point_count, kBlock) * width), totals(width);
   parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
-    turn_block(axes, signal, begin, end, weights, &squares[begin / kBlock * (1 + count)]);
+    round_rows(axes, turn(axes, signal.subspan(begin * dimension, (end - begin) * dimension)),
+               begin, weights, &squares[begin / kBlock * width]);
   });
-  std::vector<double> totals(1 + count);
-  for (std::size_t i = 0; i < squares.size(); ++i) totals[i % (1 + count)] += squares[i];
+  for (std::size_t i = 0; i < squares.size(); ++i) totals[i % width] += squares[i];
   axes.tails.push_back(totals[0]);
   for (std::size_t i = 0; i < count; ++i) {
     axes.tails.push_back(std::max(0.0, axes.tails.back() - totals[1 + i]));
@@ -121,12 +165,7 @@ PrincipalAxes find_principal_axes(std::span<const float> signal, std::size_t dim
 }
 
 std::vector<float> to_axes(const PrincipalAxes& axes, std::span<const float> points) {
-  const std::size_t n = axes.mean.size(), point_count = points.size() / n, count = axes.count();
-  const std::vector<float> centred = draw_rows(points, axes.mean, 1);
-  std::vector<float> turned(point_count * count);
-  linalg::gemm(1.0f, {centred.data(), point_count, n}, Transpose::no, {axes.axes.data(), count, n},
-               Transpose::yes, 0.0f, {turned.data(), point_count, count});
-  return turned;
+  return turn(axes, points).rows;
 }
 
 }  // namespace prt::cpca

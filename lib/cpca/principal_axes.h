@@ -4,16 +4,22 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace prt::cpca {
 
 struct PrincipalAxes {
-  std::vector<float> mean;    ///< dimension; what the axes go out from
-  std::vector<float> axes;    ///< count × dimension, orthonormal, largest variance first
-  std::vector<float> rows;    ///< point × count: the points in these coordinates
-  std::vector<double> tails;  ///< count + 1: Σ_p weight_p ‖what the first i axes leave of x_p‖²
+  std::vector<float> mean;  ///< dimension; what the axes go out from
+  std::vector<float> axes;  ///< count × dimension, orthonormal, largest variance first
+  /// The points in these coordinates, point × stride: numbers of 16 bits, rounded, times the scale
+  /// of the axis. Beside what encoders leave of a signal their rounding is nothing.
+  std::vector<std::int16_t> rows;
+  std::vector<float> scales;  ///< stride
+  std::size_t stride = 0;     ///< count and some zeros
+  /// count + 1: Σ_p weight_p ‖x_p - what the first i coordinates give‖²
+  std::vector<double> tails;
 
   std::size_t count() const { return tails.size() - 1; }
 };
@@ -23,7 +29,7 @@ struct PrincipalAxes {
 PrincipalAxes find_principal_axes(std::span<const float> signal, std::size_t dimension,
                                   std::size_t count, std::span<const float> weights);
 
-/// Other points (any number × dimension) in the coordinates of the axes.
+/// Other points (any number × dimension) in the coordinates of the axes, stride apart.
 std::vector<float> to_axes(const PrincipalAxes& axes, std::span<const float> points);
 
 }  // namespace prt::cpca

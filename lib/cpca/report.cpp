@@ -54,11 +54,9 @@ nlohmann::ordered_json to_json(const Encoded& encoded, std::span<const float> si
       {"signal_bytes", signal_bytes},
       {"bytes", bytes},
       {"compression_ratio", static_cast<double>(signal_bytes) / static_cast<double>(bytes)}};
-  if (encoded.flops > 0.0) {
-    double seconds = 0.0;
-    for (const Stage& stage : encoded.stages) seconds += stage.seconds;
-    json["gflops"] = 1e-9 * encoded.flops / seconds;
-  }
+  double seconds = 0.0;
+  for (const Stage& stage : encoded.stages) seconds += stage.seconds;
+  json["gflops"] = seconds > 0.0 ? 1e-9 * encoded.flops / seconds : 0.0;
   json.update(figures_to_json(summarize(errors, signal)));
   if (!groups.empty()) json["meshes"] = groups_to_json(groups, errors, signal);
   return json;

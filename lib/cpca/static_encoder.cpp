@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <vector>
+
 #include "cpca/encoder.h"
 #include "cpca/fit.h"
 #include "cpca/quantizer.h"
@@ -5,6 +8,25 @@
 #include "cpca/stage_clock.h"
 
 namespace prt::cpca {
+
+namespace {
+
+/// Of the products of points with means, with one another (the smaller normal form), and with
+/// vectors.
+double count_flops(const Encoded& encoded) {
+  const Encoding& encoding = encoded.encoding;
+  const auto n = static_cast<double>(encoding.dimension);
+  std::vector<double> sizes(static_cast<std::size_t>(encoding.cluster_count));
+  for (const std::uint32_t k : encoding.cluster_of_point) sizes[k] += 1.0;
+  double products = static_cast<double>(encoding.point_count) *
+                    (encoded.iterations * encoding.cluster_count + encoding.component_count);
+  if (encoding.component_count > 0) {
+    for (const double size : sizes) products += size * std::min(size, n);
+  }
+  return 2.0 * n * products;
+}
+
+}  // namespace
 
 Encoded encode_static(std::span<const float> signal, int dimension, const Options& options) {
   check_options(options);
@@ -27,6 +49,7 @@ Encoded encode_static(std::span<const float> signal, int dimension, const Option
   clock.finish("clustering");
   fit_components(signal, options.point_weights, encoded.encoding);
   clock.finish("components");
+  encoded.flops = count_flops(encoded);
   return encoded;
 }
 

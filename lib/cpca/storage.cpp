@@ -12,6 +12,8 @@ Storage prepare_storage(std::span<const float> signal, std::span<const std::uint
         make_coherent(signal, indices, row_count, options.coherence, encoding);
     report.json().update(to_json(coherence, options.coherence));
     storage.first_clusters = coherence.first_clusters;
+  } else {
+    report.json().update(overdraw_to_json(indices, encoding));
   }
   const StageTimer timer(report, "weights");
   storage.weight_format = choose_weights(signal, options.weights, encoding);

@@ -1,4 +1,4 @@
-// The two products that iterative encoders spend their time on, fused and tiled for registers like
+// The kernels that iterative encoders spend their time in, fused and tiled for registers like
 // cpca/nearest_mean.h. A panel of points stands transposed, coordinate by coordinate, in the first
 // level cache; the vectors of one cluster after the other pass by it.
 #pragma once
@@ -24,6 +24,10 @@ struct Classification {
   /// Out unless empty: for each candidate the sum over points of (least error / error there)²: how
   /// likely points are to move there.
   std::span<float> affinities = {};
+  /// find_leading() of the subspaces, if any: whole panels pass by candidates that they show to be
+  /// too far. Labels and errors are the same with and without; such a candidate's share of the
+  /// affinities is estimated.
+  const Subspaces* leading = nullptr;
 };
 
 /// By ‖x - x̃‖² = ‖y‖² - 2 y·d + ‖d‖² - Σ_i (y·b_i - d·b_i)² ([Sloan03] §4.2), where y is relative
@@ -38,13 +42,31 @@ struct ClusterPoints {
   std::span<const std::uint32_t> points;
 };
 
-/// Adds Σ_p weight_p (B y_p) y_p^T, y_p = x_p - mean, to `product`, where B are the first
-/// `vector_count` vectors of the cluster: one power step for all of them, vector_count × stride.
-void multiply_by_covariance(const Rows& rows, const Subspaces& subspaces,
-                            const ClusterPoints& cluster, std::size_t vector_count,
-                            std::span<double> product, SimdLevel level = simd_level());
+/// Adds to `moments`, (1 + vector_count) × stride, with y_p = x_p - mean: Σ_p weight_p y_p, then
+/// Σ_p weight_p (b_i·y_p) y_p of the first `vector_count` vectors of the cluster.
+void add_moments(const Rows& rows, const Subspaces& subspaces, const ClusterPoints& cluster,
+                 std::size_t vector_count, std::span<double> moments,
+                 SimdLevel level = simd_level());
 
-/// Adds Σ_p weight_p x_p to `sums`, one for each coordinate that counts.
+/// Moves the mean to that of the points, of `total_weight`, that `moments` are of, and the rows of
+/// moments after the first along: they become V C, C the covariance about the new mean. `inner`
+/// becomes V C V^T.
+void centre_moments(double total_weight, Subspaces& subspaces, std::size_t cluster,
+                    std::size_t vector_count, std::span<double> moments, std::span<double> inner,
+                    SimdLevel level = simd_level());
+
+/// The first `vector_count` vectors of the cluster become an orthonormal basis of `turn` × `rows`
+/// (stride apart), from the first row on, without those that the ones before leave shorter than
+/// `least`. Returns how many are left.
+std::size_t turn_vectors(std::span<const double> rows, std::span<const double> turn, double least,
+                         Subspaces& subspaces, std::size_t cluster, std::size_t vector_count,
+                         SimdLevel level = simd_level());
+
+/// The same of rows by themselves, in place.
+std::size_t orthonormalize(std::span<double> rows, std::size_t length, double least,
+                           SimdLevel level = simd_level());
+
+/// Adds Σ_p weight_p x_p to `sums`, one for each coordinate that counts; rows of floats only.
 void add_rows(const Rows& rows, std::span<const std::uint32_t> points, std::span<double> sums,
               SimdLevel level = simd_level());
 

@@ -10,14 +10,19 @@
 
 namespace prt::cpca {
 
-/// Points as rows, `stride` floats apart.
+/// Points as rows, `stride` numbers apart: floats, or numbers of half their size.
 struct Rows {
-  const float* values = nullptr;
+  const float* values = nullptr;  ///< nullptr: `shorts`
   std::size_t count = 0, stride = 0;
   /// Of each point in sums of errors, >= 0; empty: 1 each.
   std::span<const float> weights = {};
+  const std::int16_t* shorts = nullptr;  ///< times the scale of their coordinate
+  const float* scales = nullptr;         ///< stride
 
-  const float* row(std::size_t point) const { return values + point * stride; }
+  float at(std::size_t point, std::size_t d) const {
+    const std::size_t i = point * stride + d;
+    return values != nullptr ? values[i] : static_cast<float>(shorts[i]) * scales[d];
+  }
   float weight(std::size_t point) const { return weights.empty() ? 1.0f : weights[point]; }
 };
 

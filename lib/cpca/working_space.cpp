@@ -8,9 +8,6 @@ namespace {
 
 /// Signals of fewer coefficients are taken as they are.
 constexpr std::size_t kLeastDimension = 64;
-/// Beside the axes encoders keep this many numbers for each point: clusters, errors, orders. All
-/// together are half of the signal at most.
-constexpr std::size_t kOtherNumbers = 6;
 /// Of the error, what may lie outside the coordinates in use where there are more axes, and where
 /// there are none left.
 constexpr double kTail = 0.05, kLastTail = 0.25;
@@ -26,15 +23,18 @@ WorkingSpace::WorkingSpace(std::span<const float> signal, std::size_t dimension,
       rows_{signal.data(), signal.size() / dimension, dimension, weights},
       dimension_(dimension) {
   if (dimension < kLeastDimension) return;
-  const std::size_t count = std::min(dimension * 15 / 32, dimension / 2 - kOtherNumbers);
+  // Nearly half as many as coefficients, of half their size.
+  const std::size_t count = (dimension * 15 / 32 + 8) / 16 * 16;
   axes_ = find_principal_axes(signal, dimension, count, weights);
-  rows_.values = axes_.rows.data();
-  rows_.stride = axes_.count();
+  rows_.values = nullptr;
+  rows_.shorts = axes_.rows.data();
+  rows_.scales = axes_.scales.data();
+  rows_.stride = axes_.stride;
   fit_to(kFirstError * axes_.tails[0]);
 }
 
 bool WorkingSpace::fit_to(double error) {
-  if (axes_.tails.empty()) return false;
+  if (!has_axes()) return false;
   if (axes_.tails.back() > kLastTail * error) return use_signal();
   std::size_t count = 0;
   while (count < axes_.count() && axes_.tails[count] > kTail * error) ++count;
@@ -43,15 +43,17 @@ bool WorkingSpace::fit_to(double error) {
 }
 
 bool WorkingSpace::use_signal() {
-  if (axes_.tails.empty()) return false;
+  if (!has_axes()) return false;
   axes_ = {};
   rows_.values = signal_.data();
+  rows_.shorts = nullptr;
+  rows_.scales = nullptr;
   rows_.stride = dimension_ = signal_dimension_;
   return true;
 }
 
 std::vector<float> WorkingSpace::convert(std::span<const float> points) const {
-  if (axes_.tails.empty()) return {points.begin(), points.end()};
+  if (!has_axes()) return {points.begin(), points.end()};
   return to_axes(axes_, points);
 }
 

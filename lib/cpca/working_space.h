@@ -1,6 +1,6 @@
 // The coordinates that iterative encoders work in: as many principal axes of the signal as matter
 // beside the error that is left, or the signal itself where it has few coefficients or no such
-// axes. Half of the signal in memory at most.
+// axes. A quarter of the signal in memory.
 #pragma once
 
 #include <span>
@@ -17,8 +17,9 @@ class WorkingSpace {
 
   const Rows& rows() const { return rows_; }
   std::size_t dimension() const { return dimension_; }
+  bool has_axes() const { return !axes_.tails.empty(); }
   /// Σ_p weight_p ‖what the coordinates in use leave out of x_p‖², part of every error.
-  double tail() const { return axes_.tails.empty() ? 0.0 : axes_.tails[dimension_]; }
+  double tail() const { return has_axes() ? axes_.tails[dimension_] : 0.0; }
 
   /// As many coordinates as an error calls for. True when rows() are others now.
   bool fit_to(double error);

@@ -1,11 +1,13 @@
 #include "inspect/plots.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/log.h"
 #include "cpca/overdraw.h"
 #include "cpca/superclusters.h"
 #include "gltf/document.h"
@@ -13,6 +15,7 @@
 #include "inspect/compression_error.h"
 #include "inspect/encoding_study.h"
 #include "inspect/histogram.h"
+#include "inspect/line_plot.h"
 #include "inspect/mesh_picture.h"
 #include "inspect/statistics.h"
 
@@ -59,6 +62,58 @@ Plot label_plot(const std::string& name, const mesh::Scene& scene, const Labels&
           sizes_csv(labels)};
 }
 
+// How many vectors the cluster of a vertex has, red for the most.
+Plot vector_count_plot(const mesh::Scene& scene, const cpca::Encoding& encoding) {
+  std::vector<Vec3> colors;
+  for (const std::uint32_t k : encoding.cluster_of_point) {
+    colors.push_back(image::heat_color(static_cast<float>(encoding.component_counts[k]) /
+                                       static_cast<float>(std::max(encoding.component_count, 1))));
+  }
+  std::string csv = "cluster,vectors\n";
+  for (std::size_t k = 0; k < encoding.component_counts.size(); ++k) {
+    csv += fmt::format("{},{}\n", k, encoding.component_counts[k]);
+  }
+  const std::string caption =
+      fmt::format("vectors of a vertex's cluster: 0 (blue) to {}", encoding.component_count);
+  return {"vectors", draw_scene(scene, colors, false, caption), csv};
+}
+
+// What each vector adds to the signal beyond the means: as long as it still falls, more are of use.
+Plot variance_plot(const cpca::Encoding& encoding) {
+  const auto most = static_cast<std::size_t>(encoding.component_count);
+  const auto cluster_count = static_cast<std::size_t>(encoding.cluster_count);
+  std::vector<double> sums(cluster_count * most), squares(sums.size()), sizes(cluster_count);
+  for (std::size_t p = 0; p < encoding.point_count; ++p) {
+    const std::size_t k = encoding.cluster_of_point[p];
+    sizes[k] += 1.0;
+    for (std::size_t i = 0; i < most; ++i) {
+      const double weight = encoding.weights[p * most + i];
+      sums[k * most + i] += weight;
+      squares[k * most + i] += weight * weight;
+    }
+  }
+  Series series{"all clusters", {}, {}};
+  for (std::size_t i = 0; i < most; ++i) {
+    double variance = 0.0;
+    for (std::size_t k = 0; k < cluster_count; ++k) {
+      if (sizes[k] == 0.0) continue;
+      double length = 0.0;  // normalised weights have their scale in the vector
+      for (const float value : encoding.basis(static_cast<int>(k), static_cast<int>(i))) {
+        length += double{value} * double{value};
+      }
+      const double sum = sums[k * most + i];
+      variance += length * std::max(0.0, squares[k * most + i] - sum * sum / sizes[k]);
+    }
+    series.x.push_back(static_cast<double>(i + 1));
+    series.y.push_back(variance);
+  }
+  const LinePlot plot{.title = "What each vector of the clusters adds",
+                      .x_label = "vector",
+                      .y_label = "squares of its weights about their mean",
+                      .series = {series}};
+  return {"vector-variance", draw(plot), to_csv(plot)};
+}
+
 // Red is the 99th percentile of a vertex's error: what stands out is where the error is.
 Plot error_plot(const mesh::Scene& scene, std::vector<double> errors) {
   std::string csv = "vertex,relative_error\n";
@@ -84,8 +139,30 @@ std::vector<Plot> plots_of_model(const std::filesystem::path& path) {
       model.transfer.first_clusters.empty()
           ? encoding.cluster_of_point
           : cpca::superclusters_of_points(encoding, model.transfer.first_clusters);
-  return {label_plot("clusters", model.scene, encoding.cluster_of_point),
-          label_plot("superclusters", model.scene, superclusters)};
+  std::vector<Plot> plots;
+  plots.push_back(label_plot("clusters", model.scene, encoding.cluster_of_point));
+  plots.push_back(label_plot("superclusters", model.scene, superclusters));
+  if (encoding.component_count > 0) plots.push_back(variance_plot(encoding));
+  if (!encoding.component_counts.empty()) {
+    plots.push_back(vector_count_plot(model.scene, encoding));
+  }
+  return plots;
+}
+
+std::filesystem::path transfer_beside(const std::filesystem::path& model) {
+  std::filesystem::path name = model.filename().replace_extension();
+  if (name.extension() == ".prt") name.replace_extension();
+  name += ".transfer.exr";
+  std::filesystem::path path = model.parent_path() / name;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) {
+    log::info("taking {} for the transfer that {} was compressed from", path.string(),
+              model.string());
+    return path;
+  }
+  log::warning("without --transfer, or {} beside the model, these plots are left out: {}",
+               name.string(), fmt::join(kPlotsOfTransfer, ", "));
+  return {};
 }
 
 std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
@@ -137,12 +214,8 @@ void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& fo
 }
 
 std::vector<std::string> plot_names(bool with_transfer) {
-  std::vector<std::string> names{"clusters", "superclusters"};
-  if (with_transfer) {
-    names.insert(names.end(),
-                 {"error-histogram", "error", "error-over-storage", "error-over-components",
-                  "clusters-before", "clusters-reclassified", "clusters-superclustered"});
-  }
+  std::vector<std::string> names{"clusters", "superclusters", "vector-variance", "vectors"};
+  if (with_transfer) names.insert(names.end(), kPlotsOfTransfer.begin(), kPlotsOfTransfer.end());
   return names;
 }
 

@@ -16,9 +16,21 @@ struct Plot {
   std::string csv;     ///< the data
 };
 
-/// What a file alone tells: `clusters` and `superclusters`, coloured, and the sizes of clusters.
-/// Throws Error (bad_input) when the model holds no compressed transfer.
+/// What a file alone tells: `clusters` and `superclusters`, coloured, and their sizes;
+/// `vector-variance`, if there are vectors, what each adds; of adaptive encodings `vectors`, how
+/// many each cluster has. Throws Error (bad_input) when the model holds no compressed transfer.
 std::vector<Plot> plots_of_model(const std::filesystem::path& model);
+
+/// Names of the plots that need the transfer as well.
+inline const std::vector<std::string> kPlotsOfTransfer{
+    "error-histogram",        "error",           "error-over-storage",
+    "error-over-components",  "clusters-before", "clusters-reclassified",
+    "clusters-superclustered"};
+
+/// The transfer that lies beside a model as prt-transfer and Makefile.assets leave it, NAME.prt.glb
+/// or NAME.glb and NAME.transfer.exr; empty if there is none. A message tells which, and what is
+/// left out without it.
+std::filesystem::path transfer_beside(const std::filesystem::path& model);
 
 /// What the transfer that it was compressed from adds: `error-histogram`, `error`, and what other
 /// encodings of that signal would give: `error-over-storage`, `error-over-components`, and clusters

@@ -2,11 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cpca/signals.h"
 #include "cpca/working_space.h"
 
 namespace prt::cpca {
 namespace {
+
+double at(const PrincipalAxes& axes, std::size_t point, std::size_t axis) {
+  return double{static_cast<float>(axes.rows[point * axes.stride + axis])} *
+         double{axes.scales[axis]};
+}
 
 TEST(PrincipalAxes, SquaresOfRowsAndTailsAddUpToTheVariance) {
   constexpr std::size_t n = 64, point_count = 3000, count = 20;
@@ -20,7 +27,7 @@ TEST(PrincipalAxes, SquaresOfRowsAndTailsAddUpToTheVariance) {
       squares[0] += y * y;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      squares[1 + i] += double{axes.rows[p * count + i]} * double{axes.rows[p * count + i]};
+      squares[1 + i] += at(axes, p, i) * at(axes, p, i);
     }
   }
   EXPECT_NEAR(axes.tails[0], squares[0], 1e-6 * squares[0]);
@@ -36,8 +43,31 @@ TEST(PrincipalAxes, ConvertOtherPointsLikeTheSignals) {
   const auto signal = make_signal(500, n, 2);
   const PrincipalAxes axes = find_principal_axes(signal, n, 16, {});
   const auto rows = to_axes(axes, std::span(signal).first(3 * n));
-  ASSERT_EQ(rows.size(), 3u * 16u);
-  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(rows[i], axes.rows[i], 1e-5);
+  ASSERT_EQ(rows.size(), 3 * axes.stride);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_NEAR(rows[i], at(axes, i / axes.stride, i % axes.stride),
+                0.51 * double{axes.scales[i % axes.stride]});
+  }
+}
+
+TEST(PrincipalAxes, TailsCountRounding) {
+  constexpr std::size_t n = 64, point_count = 500;
+  std::vector<float> signal;  // of rank one: all that is left is rounding
+  const auto direction = random_values(n, 1);
+  for (std::size_t p = 0; p < point_count; ++p) {
+    for (const float value : direction) signal.push_back(value * static_cast<float>(p) * 1e-3f);
+  }
+  const PrincipalAxes axes = find_principal_axes(signal, n, 1, {});
+  ASSERT_EQ(axes.stride, 16u);
+  double rounding = 0.0;
+  for (std::size_t p = 0; p < point_count; ++p) {
+    const double rest =
+        double{to_axes(axes, std::span(signal).subspan(p * n, n))[0]} - at(axes, p, 0);
+    EXPECT_LE(std::abs(rest), 0.51 * double{axes.scales[0]});
+    rounding += rest * rest;
+  }
+  EXPECT_GT(rounding, 0.0);
+  EXPECT_NEAR(axes.tails[1], rounding, 0.5 * rounding);
 }
 
 TEST(WorkingSpace, TakesTheSignalItselfWhereAxesWouldLoseIt) {

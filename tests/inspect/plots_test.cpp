@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -110,22 +112,48 @@ TEST(MeshPicture, ShowsTheNearestTriangleInItsColor) {
 
 class PlotsTest : public SampleFiles {};
 
+std::vector<std::string> names_of(const std::vector<Plot>& plots) {
+  std::vector<std::string> names;
+  for (const Plot& plot : plots) {
+    names.push_back(plot.name);
+    EXPECT_GT(plot.image.pixel_count(), 10000u) << plot.name;
+    EXPECT_GT(plot.csv.size(), 20u) << plot.name;
+  }
+  return names;
+}
+
 TEST_F(PlotsTest, AreThoseThatAreAnnounced) {
   const auto model = write_baked(transfer());
-  std::vector<std::string> names;
-  for (const Plot& plot : plots_of_model(model)) {
-    names.push_back(plot.name);
-    EXPECT_GT(plot.image.pixel_count(), 10000u);
-    EXPECT_GT(plot.csv.size(), 20u);
+  std::vector<std::string> names = names_of(plots_of_model(model));
+  EXPECT_EQ(names, (std::vector<std::string>{"clusters", "superclusters", "vector-variance"}));
+  for (const std::string& name : names_of(plots_of_compression(model, write_transfer()))) {
+    names.push_back(name);
   }
-  EXPECT_EQ(names, plot_names(false));
-  for (const Plot& plot : plots_of_compression(model, write_transfer())) {
-    names.push_back(plot.name);
-    EXPECT_GT(plot.image.pixel_count(), 10000u);
-    EXPECT_GT(plot.csv.size(), 20u);
-  }
+  names.insert(names.begin() + 3, "vectors");  // of adaptive ones
   EXPECT_EQ(names, plot_names(true));
   EXPECT_THROW(plots_of_model(write_model()), Error);
+}
+
+TEST_F(PlotsTest, ShowTheVectorsOfAdaptiveEncodings) {
+  gltf::PrecomputedTransfer adaptive = transfer();
+  cpca::Encoding& encoding = adaptive.encoding;
+  encoding.component_counts.assign(static_cast<std::size_t>(encoding.cluster_count),
+                                   static_cast<std::uint32_t>(encoding.component_count));
+  const std::vector<Plot> plots = plots_of_model(write_baked(adaptive));
+  EXPECT_EQ(names_of(plots), plot_names(false));
+  EXPECT_TRUE(plots[3].csv.starts_with("cluster,vectors\n0,")) << plots[3].csv;
+}
+
+TEST(TransferBeside, IsFoundByTheNameOfTheModel) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "beside";
+  std::filesystem::create_directories(folder);
+  EXPECT_EQ(transfer_beside(folder / "a.prt.glb"), "");
+  std::ofstream(folder / "a.transfer.exr") << "x";
+  for (const char* name : {"a.prt.glb", "a.glb", "a.prt.gltf"}) {
+    EXPECT_EQ(transfer_beside(folder / name), folder / "a.transfer.exr") << name;
+  }
+  EXPECT_EQ(transfer_beside(folder / "b.prt.glb"), "");
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

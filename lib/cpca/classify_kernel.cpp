@@ -1,0 +1,256 @@
+#include <vector>
+
+#include "cpca/subspace_kernels.h"
+#include "cpca/subspace_tile.h"
+
+namespace prt::cpca {
+
+namespace {
+
+/// What is lost to rounding in errors, as a share of the squares that they come from.
+constexpr float kRounding = 1e-6f;
+
+/// Σ (a - b) c
+template <class T>
+[[gnu::always_inline]] inline float dot_difference(const float* a, const float* b, const float* c,
+                                                   std::size_t count) {
+  using Floats = typename T::Floats;
+  using Unaligned = typename T::Unaligned;
+  Floats sum{};
+  for (std::size_t i = 0; i < count; i += T::kLanes) {
+    sum +=
+        (*reinterpret_cast<const Unaligned*>(a + i) - *reinterpret_cast<const Unaligned*>(b + i)) *
+        *reinterpret_cast<const Unaligned*>(c + i);
+  }
+  float total = 0.0f;
+  for (int lane = 0; lane < T::kLanes; ++lane) total += sum[lane];
+  return total;
+}
+
+/// For each candidate ‖d‖², then d·b_i of its vectors.
+template <class T>
+[[gnu::always_inline]] inline void find_offsets(const Subspaces& subspaces,
+                                                std::span<const std::uint32_t> candidates,
+                                                float* offsets) {
+  const std::size_t count = padded(subspaces.dimension);
+  const float* own = subspaces.mean(candidates[0]);
+  for (const std::uint32_t k : candidates) {
+    const float* mean = subspaces.mean(k);
+    const float square =
+        dot_difference<T>(mean, own, mean, count) - dot_difference<T>(mean, own, own, count);
+    *offsets++ = std::max(0.0f, square);
+    for (std::uint32_t i = 0; i < subspaces.used[k]; ++i) {
+      *offsets++ = dot_difference<T>(mean, own, subspaces.vector(k, i), count);
+    }
+  }
+}
+
+/// Errors of a panel of points in some subspaces.
+template <class T>
+struct PanelErrors {
+  using Floats = typename T::Floats;
+  const Subspaces& subspaces;
+  std::span<const std::uint32_t> candidates;
+  std::vector<std::size_t> starts;  ///< of each candidate's offsets
+  Buffer offsets, products;
+  const float* panel = nullptr;
+  Floats square[2], own[2];  ///< ‖y‖², and y times the mean that y is relative to
+
+  [[gnu::always_inline]] PanelErrors(const Subspaces& all,
+                                     std::span<const std::uint32_t> candidate_numbers)
+      : subspaces(all),
+        candidates(candidate_numbers),
+        starts(count_starts(all, candidate_numbers)),
+        offsets(starts.back()),
+        products((1 + all.capacity) * T::kPanel) {
+    find_offsets<T>(subspaces, candidates, offsets.get());
+  }
+
+  static std::vector<std::size_t> count_starts(const Subspaces& all,
+                                               std::span<const std::uint32_t> numbers) {
+    std::vector<std::size_t> starts{0};
+    for (const std::uint32_t k : numbers) starts.push_back(starts.back() + 1 + all.used[k]);
+    return starts;
+  }
+
+  /// Finds the errors of the first candidate too.
+  [[gnu::always_inline]] void start(const float* coordinates, Floats* error) {
+    panel = coordinates;
+    const auto* y = reinterpret_cast<const Floats*>(panel);
+    square[0] = square[1] = Floats{};
+    for (std::size_t d = 0; d < subspaces.dimension; ++d) {
+      square[0] += y[2 * d] * y[2 * d];
+      square[1] += y[2 * d + 1] * y[2 * d + 1];
+    }
+    multiply_by(0);
+    const auto* product = reinterpret_cast<const Floats*>(products.get());
+    for (int half = 0; half < 2; ++half) own[half] = product[half];
+    subtract(0, error);
+  }
+
+  [[gnu::always_inline]] void find(std::size_t candidate, Floats* error) {
+    multiply_by(candidate);
+    subtract(candidate, error);
+  }
+
+ private:
+  [[gnu::always_inline]] void multiply_by(std::size_t candidate) {
+    const std::uint32_t k = candidates[candidate];
+    multiply<T>(panel, T::kPanel, subspaces.mean(k), subspaces.stride, 1 + subspaces.used[k],
+                subspaces.dimension, products.get());
+  }
+
+  [[gnu::always_inline]] void subtract(std::size_t candidate, Floats* error) {
+    const auto* product = reinterpret_cast<const Floats*>(products.get());
+    const float* offset = offsets.get() + starts[candidate];
+    const std::size_t count = subspaces.used[candidates[candidate]];
+    for (std::size_t half = 0; half < 2; ++half) {
+      Floats sum = square[half] - 2.0f * (product[half] - own[half]) + offset[0];
+      for (std::size_t i = 1; i <= count; ++i) {
+        const Floats share = product[2 * i + half] - offset[i];
+        sum -= share * share;
+      }
+      error[half] = sum > 0.0f ? sum : Floats{};
+    }
+  }
+};
+
+/// The best candidate of each point of a panel.
+template <class T>
+struct Best {
+  using Floats = typename T::Floats;
+  Floats cost[2], error[2];
+  typename T::Ints candidate[2];
+
+  [[gnu::always_inline]] void compare(const Floats* errors, float penalty, const Floats* scales,
+                                      std::size_t number) {
+    for (int half = 0; half < 2; ++half) {
+      const auto other = errors[half] + penalty * scales[half];
+      const auto better = other < cost[half];
+      cost[half] = better ? other : cost[half];
+      error[half] = better ? errors[half] : error[half];
+      candidate[half] =
+          better ? typename T::Ints{} + static_cast<std::int32_t>(number) : candidate[half];
+    }
+  }
+
+  /// Whether errors of at least `bounds` could be better for any point.
+  [[gnu::always_inline]] bool may_lose_to(const Floats* bounds, float penalty, const Floats* scales,
+                                          const Floats* rounding) const {
+    typename T::Ints any{};
+    for (int half = 0; half < 2; ++half)
+      any |= bounds[half] + penalty * scales[half] - rounding[half] < cost[half];
+    std::int32_t lanes = 0;
+    for (int lane = 0; lane < T::kLanes; ++lane) lanes |= any[lane];
+    return lanes != 0;
+  }
+};
+
+/// Adds to the affinity of each candidate; `count` lanes hold points.
+template <class T>
+[[gnu::always_inline]] inline void add_affinities(const float* errors, const Best<T>& best,
+                                                  std::size_t count, std::span<float> affinities) {
+  using Floats = typename T::Floats;
+  constexpr float kTiny = 1e-30f;
+  alignas(64) float counts[T::kPanel];
+  for (std::size_t p = 0; p < T::kPanel; ++p) counts[p] = p < count ? 1.0f : 0.0f;
+  const auto* error = reinterpret_cast<const Floats*>(errors);
+  const auto* mask = reinterpret_cast<const Floats*>(counts);
+  for (float& affinity : affinities) {
+    Floats sum{};
+    for (int half = 0; half < 2; ++half) {
+      const Floats share = (best.error[half] + kTiny) / (error[half] + kTiny);
+      sum += share * share * mask[half];
+    }
+    for (int lane = 0; lane < T::kLanes; ++lane) affinity += sum[lane];
+    error += 2;
+  }
+}
+
+/// Errors of a panel in each candidate (candidate × kPanel), and the best of each point. Where the
+/// leading coordinates show that a candidate is too far, its error is an estimate.
+template <class T>
+[[gnu::always_inline]] inline void find_best(const Classification& work, PanelErrors<T>& all,
+                                             PanelErrors<T>* leading, const float* panel,
+                                             const float* point_scales, float* errors,
+                                             Best<T>& best) {
+  using Floats = typename T::Floats;
+  auto* error = reinterpret_cast<Floats*>(errors);
+  const auto* scales = reinterpret_cast<const Floats*>(point_scales);
+  all.start(panel, error);
+  Floats beyond[2] = {}, rounding[2] = {};
+  for (int half = 0; half < 2; ++half) {
+    rounding[half] = kRounding * all.square[half];
+    best.error[half] = error[half];
+    best.cost[half] = error[half] + work.penalties[0] * scales[half] - rounding[half];
+    best.candidate[half] = typename T::Ints{};
+  }
+  if (leading != nullptr) {
+    Floats bound[2];
+    leading->start(panel, bound);
+    for (int half = 0; half < 2; ++half) beyond[half] = error[half] - bound[half];
+  }
+  for (std::size_t c = 1; c < work.candidates.size(); ++c) {
+    error += 2;
+    if (leading != nullptr) {
+      leading->find(c, error);
+      const float offset = kRounding * leading->offsets.get()[leading->starts[c]];
+      const Floats margin[2] = {rounding[0] + offset, rounding[1] + offset};
+      if (!best.may_lose_to(error, work.penalties[c], scales, margin)) {
+        for (int half = 0; half < 2; ++half) error[half] += beyond[half];
+        continue;
+      }
+    }
+    all.find(c, error);
+    best.compare(error, work.penalties[c], scales, c);
+  }
+}
+
+template <class T, class Source>
+[[gnu::always_inline]] inline double classify_all(const Source& source, const Rows& rows,
+                                                  const Subspaces& subspaces,
+                                                  const Classification& work) {
+  const std::size_t n = subspaces.dimension;
+  Buffer panel(padded(n) * T::kPanel), scales(T::kPanel),
+      errors(work.candidates.size() * T::kPanel);
+  PanelErrors<T> all(subspaces, work.candidates);
+  PanelErrors<T> leading(work.leading != nullptr ? *work.leading : subspaces,
+                         work.leading != nullptr ? work.candidates : work.candidates.first(1));
+  double error_before = 0.0;
+  for (std::size_t done = 0; done < work.points.size(); done += T::kPanel) {
+    const auto points =
+        work.points.subspan(done, std::min<std::size_t>(T::kPanel, work.points.size() - done));
+    transpose<T>(source, subspaces.mean(work.candidates[0]), n, points, panel.get());
+    for (std::size_t p = 0; p < T::kPanel; ++p) {
+      const float weight = rows.weight(points[std::min(p, points.size() - 1)]);
+      scales.get()[p] = weight > 0.0f ? 1.0f / weight : 0.0f;
+    }
+    Best<T> best;
+    find_best<T>(work, all, work.leading != nullptr ? &leading : nullptr, panel.get(), scales.get(),
+                 errors.get(), best);
+    const auto* candidate = reinterpret_cast<const std::int32_t*>(best.candidate);
+    const auto* error = reinterpret_cast<const float*>(best.error);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      work.labels[points[p]] = work.candidates[static_cast<std::size_t>(candidate[p])];
+      work.errors[points[p]] = error[p];
+      error_before += double{rows.weight(points[p])} * double{errors.get()[p]};
+    }
+    if (!work.affinities.empty())
+      add_affinities<T>(errors.get(), best, points.size(), work.affinities);
+  }
+  return error_before;
+}
+
+}  // namespace
+
+double classify(const Rows& rows, const Subspaces& subspaces, const Classification& work,
+                SimdLevel level) {
+  return run_for(
+      level, [&](auto tile) __attribute__((always_inline)) {
+        using T = decltype(tile);
+        return rows.values != nullptr ? classify_all<T>(FloatRows(rows), rows, subspaces, work)
+                                      : classify_all<T>(ShortRows(rows), rows, subspaces, work);
+      });
+}
+
+}  // namespace prt::cpca
