@@ -20,6 +20,13 @@ std::vector<std::size_t> point_counts(const PointsByCluster& points) {
   return counts;
 }
 
+/// Alternations come in cycles that begin with some at a smaller budget: clusters that the
+/// iterative method fitted to the same number of vectors each hardly part from it otherwise.
+constexpr int kCycle = 10, kTight = 4;
+constexpr double kTightShare = 0.6;
+/// For each iteration that is asked for.
+constexpr int kAlternations = 2;
+
 /// Classifies again and again with vectors where they are worth most. The best labels are those
 /// whose allocation, all within the budget, leaves the least error.
 class Adaptation {
@@ -28,39 +35,43 @@ class Adaptation {
       : clusterer_(encoder.clusterer()),
         tail_(encoder.space().tail()),
         most_(most),
-        budget_(budget),
-        allocation_{.counts = clusterer_.subspaces().used} {}
+        budget_(budget) {}
 
-  std::vector<std::uint32_t> run(int iterations, std::vector<double>& errors) {
-    fit(kFirstSteps);
-    std::vector<std::uint32_t> best = clusterer_.labels();
+  std::vector<std::uint32_t> run(int count, std::vector<double>& errors) {
+    std::vector<std::uint32_t> best;
     double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i <= iterations; ++i) {
-      const std::vector<std::uint32_t> labels = clusterer_.labels();
+    allocation_.counts = clusterer_.subspaces().used;
+    for (int i = 0; i < count; ++i) {
+      // The first measures what the iterative method left, so that this is never worse.
+      const bool is_first = i == 0;
+      const bool is_tight = !is_first && i % kCycle <= kTight && i + kCycle - kTight <= count;
+      clusterer_.update(allocation_.counts, most_, is_first ? kFirstSteps : kSteps);
+      if (!is_first) allocate_vectors(is_tight);
+      std::vector<std::uint32_t> labels = clusterer_.labels();
       // What a point that moves to a cluster of more vectors costs is taken from where it would
       // have saved allocation_.cost.
       const auto pass = clusterer_.classify(i % 5 == 0, static_cast<float>(allocation_.cost));
       errors.push_back(pass.error_before + tail_);
-      if (pass.error_before < least) {
+      if (!is_tight && pass.error_before < least) {
         least = pass.error_before;
-        best = labels;
+        best = std::move(labels);
       }
-      if (pass.moved_count == 0) break;
-      fit(kSteps);
+      if (!is_first && !is_tight && pass.moved_count == 0) break;
     }
     return best;
   }
 
  private:
-  void fit(int steps) {
-    clusterer_.update(allocation_.counts, most_, steps);
+  void allocate_vectors(bool is_tight) {
     const Subspaces& subspaces = clusterer_.subspaces();
     std::vector<double> variances(subspaces.cluster_count() * most_);
     for (std::size_t k = 0; k < subspaces.cluster_count(); ++k) {
       std::copy_n(&subspaces.variances[k * subspaces.capacity], subspaces.held[k],
                   variances.begin() + static_cast<std::ptrdiff_t>(k * most_));
     }
-    allocation_ = allocate(variances, most_, point_counts(clusterer_.points()), budget_);
+    const auto tight = static_cast<std::size_t>(kTightShare * static_cast<double>(budget_));
+    allocation_ =
+        allocate(variances, most_, point_counts(clusterer_.points()), is_tight ? tight : budget_);
     clusterer_.set_used(allocation_.counts);
   }
 
@@ -70,6 +81,16 @@ class Adaptation {
   std::size_t budget_;
   Allocation allocation_;
 };
+
+/// Σ D_i² of the first vectors of the clusters.
+double captured(std::span<const double> variances, std::size_t most,
+                std::span<const std::uint32_t> counts) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    for (std::size_t i = 0; i < counts[k]; ++i) sum += variances[k * most + i];
+  }
+  return sum;
+}
 
 /// Leaves each cluster the vectors that are worth most, of an encoding that has the same number of
 /// them in each.
@@ -85,16 +106,21 @@ void trim(std::span<const float> point_weights, std::size_t budget, Encoding& en
           weight * weight * (point_weights.empty() ? 1.0 : double{point_weights[p]});
     }
   }
-  encoding.component_counts =
-      allocate(variances, most,
-               point_counts(sort_by_cluster(encoding.cluster_of_point, cluster_count)), budget)
-          .counts;
-  const std::size_t left =
-      *std::max_element(encoding.component_counts.begin(), encoding.component_counts.end());
+  std::vector<std::uint32_t>& counts = encoding.component_counts;
+  counts = allocate(variances, most,
+                    point_counts(sort_by_cluster(encoding.cluster_of_point, cluster_count)), budget)
+               .counts;
+  std::vector<std::uint32_t> alike(cluster_count);
+  for (std::size_t k = 0; k < cluster_count; ++k) {
+    const std::size_t wanted = std::min(most, budget / encoding.point_count);
+    while (alike[k] < wanted && variances[k * most + alike[k]] > 0.0) ++alike[k];
+  }
+  if (captured(variances, most, alike) > captured(variances, most, counts)) counts = alike;
+  const std::size_t left = *std::max_element(counts.begin(), counts.end());
   for (std::size_t k = 0; k < cluster_count; ++k) {
     for (std::size_t i = 0; i < left; ++i) {
       float* to = &encoding.bases[(k * left + i) * n];
-      if (i < encoding.component_counts[k]) {
+      if (i < counts[k]) {
         std::copy_n(&encoding.bases[(k * most + i) * n], n, to);
       } else {
         std::fill_n(to, n, 0.0f);
@@ -102,7 +128,7 @@ void trim(std::span<const float> point_weights, std::size_t budget, Encoding& en
     }
   }
   for (std::size_t p = 0; p < encoding.point_count; ++p) {
-    const std::size_t count = encoding.component_counts[encoding.cluster_of_point[p]];
+    const std::size_t count = counts[encoding.cluster_of_point[p]];
     for (std::size_t i = 0; i < left; ++i) {
       encoding.weights[p * left + i] = i < count ? encoding.weights[p * most + i] : 0.0f;
     }
@@ -124,22 +150,24 @@ Encoded encode_adaptive(std::span<const float> signal, int dimension, const Opti
   most.component_count = std::min(wanted, dimension);
   const std::size_t budget = signal.size() / n * static_cast<std::size_t>(options.component_count);
   Encoded encoded;
+  std::vector<std::uint32_t> labels;
   StageClock clock(encoded.stages);
-  IterativeEncoder encoder(
-      signal, n, options,
-      static_cast<std::size_t>(std::max(most.component_count, options.component_count + 1)));
-  clock.finish("seeding");
-  encoded.levels = encoder.run();
-  clock.finish("clustering");
-  encoded.levels.push_back({.component_count = most.component_count, .errors = {}});
-  Adaptation adaptation(encoder, static_cast<std::uint32_t>(most.component_count), budget);
-  std::vector<std::uint32_t> labels =
-      adaptation.run(options.iterations, encoded.levels.back().errors);
+  {  // what the encoder holds is gone before weights are made
+    IterativeEncoder encoder(
+        signal, n, options,
+        static_cast<std::size_t>(std::max(most.component_count, options.component_count + 1)));
+    clock.finish("seeding");
+    encoded.levels = encoder.run();
+    clock.finish("clustering");
+    encoded.levels.push_back({.component_count = most.component_count, .errors = {}});
+    Adaptation adaptation(encoder, static_cast<std::uint32_t>(most.component_count), budget);
+    labels = adaptation.run(kAlternations * options.iterations, encoded.levels.back().errors);
+    encoded.flops = encoder.clusterer().flops();
+    clock.finish("adaptation");
+  }
   for (const Level& level : encoded.levels) {
     encoded.iterations += static_cast<int>(level.errors.size());
   }
-  encoded.flops = encoder.clusterer().flops();
-  clock.finish("adaptation");
   encoded.encoding = fit(signal, dimension, std::move(labels), most);
   if (most.component_count > 0) trim(options.point_weights, budget, encoded.encoding);
   clock.finish("components");

@@ -62,7 +62,8 @@ Encoded encode_iterative(std::span<const float> signal, int dimension, const Opt
 
 /// Adaptive CPCA [Sloan03] §4.3: from the result of encode_iterative, vectors go to the clusters
 /// where they save most error for the weights that they cost, Σ_k m_k n'_k <= m_p component_count,
-/// up to max_component_count each, and points are classified again, `iterations` times.
+/// up to max_component_count each, and points are classified again, twice `iterations` times. Some
+/// of them have a smaller budget, which rearranges the clusters; never worse than encode_iterative.
 Encoded encode_adaptive(std::span<const float> signal, int dimension, const Options& options);
 
 }  // namespace prt::cpca

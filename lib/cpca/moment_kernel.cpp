@@ -8,7 +8,7 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kBlock = 128;
 
 /// Some points of a cluster relative to its mean, and their products with its vectors.
 template <class T>

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "cpca/signals.h"
 #include "cpca/working_space.h"
 
@@ -48,26 +46,6 @@ TEST(PrincipalAxes, ConvertOtherPointsLikeTheSignals) {
     EXPECT_NEAR(rows[i], at(axes, i / axes.stride, i % axes.stride),
                 0.51 * double{axes.scales[i % axes.stride]});
   }
-}
-
-TEST(PrincipalAxes, TailsCountRounding) {
-  constexpr std::size_t n = 64, point_count = 500;
-  std::vector<float> signal;  // of rank one: all that is left is rounding
-  const auto direction = random_values(n, 1);
-  for (std::size_t p = 0; p < point_count; ++p) {
-    for (const float value : direction) signal.push_back(value * static_cast<float>(p) * 1e-3f);
-  }
-  const PrincipalAxes axes = find_principal_axes(signal, n, 1, {});
-  ASSERT_EQ(axes.stride, 16u);
-  double rounding = 0.0;
-  for (std::size_t p = 0; p < point_count; ++p) {
-    const double rest =
-        double{to_axes(axes, std::span(signal).subspan(p * n, n))[0]} - at(axes, p, 0);
-    EXPECT_LE(std::abs(rest), 0.51 * double{axes.scales[0]});
-    rounding += rest * rest;
-  }
-  EXPECT_GT(rounding, 0.0);
-  EXPECT_NEAR(axes.tails[1], rounding, 0.5 * rounding);
 }
 
 TEST(WorkingSpace, TakesTheSignalItselfWhereAxesWouldLoseIt) {
