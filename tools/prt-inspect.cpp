@@ -30,11 +30,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--transfer", options.transfer,
                  "Transfer that FILE was compressed from: reports the error, vertex by vertex")
       ->group("Compression error");
-  app.add_option(
-         "--plots", options.plots,
-         "Folder, made when missing, for pictures (.png) and tables (.csv) of the clusters and, "
-         "with "
-         "--transfer or NAME.transfer.exr beside NAME.prt.glb, of the error and of other encodings")
+  app.add_option("--plots", options.plots,
+                 "Folder, made when missing, for pictures and tables of the clusters and, with "
+                 "--transfer or NAME.transfer.exr beside FILE, of errors and other encodings")
       ->group("Compression error");
   app.add_option("--compare", options.compare, "Two images, the second being the reference")
       ->expected(2)
@@ -66,17 +64,17 @@ void check_usage(const Options& options) {
   }
 }
 
-void check_files(const Options& options, const cli::CommonOptions& common) {
-  std::vector<fs::path> inputs{options.file, options.transfer, options.mask, options.noise};
-  inputs.insert(inputs.end(), options.compare.begin(), options.compare.end());
+void check_files(Options& options, const cli::CommonOptions& common) {
   std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
+    if (options.transfer.empty()) options.transfer = inspect::transfer_beside(options.file);
     inspect::make_plot_folder(options.plots);
-    for (const std::string& name : inspect::plot_names(!options.transfer.empty())) {
-      outputs.push_back({options.plots / (name + ".png"), {".png"}, {}});
-      outputs.push_back({options.plots / (name + ".csv"), {".csv"}, {}});
+    for (const fs::path& file : inspect::plot_files(options.plots, !options.transfer.empty())) {
+      outputs.push_back({file, {file.extension().string()}, {}});
     }
   }
+  std::vector<fs::path> inputs{options.file, options.transfer, options.mask, options.noise};
+  inputs.insert(inputs.end(), options.compare.begin(), options.compare.end());
   cli::check_paths(inputs, outputs, common);
 }
 
@@ -134,9 +132,6 @@ int main(int argc, char** argv) {
   add_options(tool.app(), options);
   return tool.run(argc, argv, [&](Report& report) {
     check_usage(options);
-    if (!options.plots.empty() && options.transfer.empty()) {
-      options.transfer = inspect::transfer_beside(options.file);
-    }
     check_files(options, tool.common());
     const bool no_clobber = tool.common().no_clobber;
     inspect::Json json = inspect::Json::object();

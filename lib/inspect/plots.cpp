@@ -219,4 +219,14 @@ std::vector<std::string> plot_names(bool with_transfer) {
   return names;
 }
 
+std::vector<std::filesystem::path> plot_files(const std::filesystem::path& folder,
+                                              bool with_transfer) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : plot_names(with_transfer)) {
+    files.push_back(folder / (name + ".png"));
+    files.push_back(folder / (name + ".csv"));
+  }
+  return files;
+}
+
 }  // namespace prt::inspect

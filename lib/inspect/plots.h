@@ -48,7 +48,9 @@ void make_plot_folder(const std::filesystem::path& folder);
 void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,
                  bool no_clobber, Report& report);
 
-/// Names of all files that the two can write, without extension.
+/// Names of all plots that the two can give, and the files of them in a folder.
 std::vector<std::string> plot_names(bool with_transfer);
+std::vector<std::filesystem::path> plot_files(const std::filesystem::path& folder,
+                                              bool with_transfer);
 
 }  // namespace prt::inspect
