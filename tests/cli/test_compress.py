@@ -48,6 +48,7 @@ class Signal(ToolTest):
                   for method in ("static", "iterative", "adaptive")]
         vq = self.compress("--method", "vq", "--clusters", 20)
         pca = self.compress("--method", "pca", "--components", 2)
+        self.assertGreater(min(vq["gflops"], pca["gflops"]), 0)
         self.assertEqual((vq["component_count"], pca["cluster_count"]), (0, 1))
         self.assertLess(errors[0], min(vq["squared_error"], pca["squared_error"]))
         self.assertLess(errors[1], 0.9 * errors[0])

@@ -51,6 +51,7 @@ TEST(IterativeEncoder, ErrorNeverRises) {
     int iterations = 0;
     for (const Level& level : encoded.levels) {
       ASSERT_FALSE(level.errors.empty());
+      EXPECT_LE(level.errors.size(), static_cast<std::size_t>(test.options.iterations));
       for (double error : level.errors) {
         EXPECT_LE(error, last * (1.0 + kRounding)) << level.component_count << " vectors";
         last = error;
