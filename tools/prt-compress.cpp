@@ -26,10 +26,11 @@ const std::map<std::string, std::optional<cpca::WeightFormat>> kWeights = {
 CLI::Option* add_files(CLI::App& app, Job& job) {
   app.add_option("model", job.model, "The model that was baked (.glb, .gltf)");
   app.add_option("transfer", job.transfer, "Its transfer (.transfer.exr)");
-  app.add_option("-o,--output", job.output, "The model with compressed transfer (.glb)");
+  app.add_option("-o,--output", job.output,
+                 "The model with compressed transfer (.glb), or of a signal the arrays (.npz)");
   return app.add_option("--signal", job.signal,
-                        "In place of these: a matrix of float32 or float64, a point a row (.npy); "
-                        "only reports");
+                        "In place of a model and its transfer: a matrix of float32 or float64, a "
+                        "point a row (.npy)");
 }
 
 void add_method(CLI::App& app, Job& job) {
@@ -123,7 +124,8 @@ int main(int argc, char** argv) {
     job.no_clobber = tool.common().no_clobber;
     compress::check(job);
     cli::check_paths({job.model, job.transfer, job.signal, job.coefficient_weights},
-                     {{job.output, {".glb"}, job.model}}, tool.common());
+                     {{job.output, {job.signal.empty() ? ".glb" : ".npz"}, job.model}},
+                     tool.common());
     compress::run(job, report);
     log_summary(report.json());
   });

@@ -2,6 +2,7 @@
 
 #include "compress/job.h"
 #include "core/error.h"
+#include "gltf/precomputed_transfer.h"
 
 namespace prt::compress {
 
@@ -11,28 +12,41 @@ void reject(const std::string& what, const std::string& advice) {
   throw Error(ErrorKind::usage, what, {.advice = advice});
 }
 
-}  // namespace
+void check_room(const char* option, int found, int most) {
+  if (found <= most) return;
+  throw Error(ErrorKind::usage, fmt::format("{} beyond what a model has room for", option),
+              {.found = fmt::format("{}", found), .expected = fmt::format("at most {}", most)});
+}
 
-void check(const Job& job) {
-  const bool has_model = !job.model.empty() || !job.transfer.empty();
+void check_files(const Job& job) {
   if (job.signal.empty()) {
     if (job.model.empty() || job.transfer.empty() || job.output.empty()) {
       reject("a model, its transfer and -o are needed", "Or a signal alone: --signal FILE.npy.");
     }
-  } else if (has_model || !job.output.empty()) {
-    reject("--signal goes without a model, a transfer and -o", "Its result is the report.");
+    check_room("--clusters", job.cluster_count.value_or(1), gltf::kMaxClusterCount);
+    check_room("--components", job.component_count.value_or(0), gltf::kMaxComponentCount);
+    check_room("--max-components", job.max_component_count, gltf::kMaxComponentCount);
+  } else if (!job.model.empty() || !job.transfer.empty()) {
+    reject("--signal goes without a model and a transfer", "Name the signal alone.");
   } else if (job.weigh_by_area) {
-    reject("--point-weights area needs a model", "");
+    reject("--point-weights area needs a model", "Leave it out.");
   }
+}
+
+}  // namespace
+
+void check(const Job& job) {
+  check_files(job);
   if (job.method == "vq" && job.component_count.value_or(0) != 0) {
     reject("--method vq has no components", "Leave --components out, or take --method static.");
   }
   if (job.method == "pca" && job.cluster_count.value_or(1) != 1) {
     reject("--method pca has one cluster", "Leave --clusters out, or take --method static.");
   }
-  if (job.method == "pca" && job.iterations) reject("--method pca has no iterations", "");
+  if (job.method == "pca" && job.iterations)
+    reject("--method pca has no iterations", "Leave --iterations out.");
   if (job.max_component_count > 0 && job.method != "adaptive") {
-    reject("--max-components is for --method adaptive", "");
+    reject("--max-components is for --method adaptive", "Leave it out, or take that method.");
   }
   const bool is_bounded = job.bound.max_error || job.bound.max_bytes;
   if (is_bounded && (job.cluster_count || job.component_count)) {

@@ -4,8 +4,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "compress/scaling.h"
 #include "compress/signal.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -13,6 +15,7 @@
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "signal/npy.h"
+#include "signal/npz.h"
 #include "signal/transfer_signal.h"
 
 namespace prt::compress {
@@ -24,7 +27,9 @@ struct Input {
   mesh::Scene scene;                ///< without a document empty
   signal::TransferSignal transfer;  ///< of a plain signal only the values
   std::size_t dimension = 0;
-  std::vector<float> scales, point_weights;
+  std::vector<float> coefficient_weights, point_weights;
+
+  Weights weights() const { return {point_weights, coefficient_weights}; }
 };
 
 /// What a signal may take: beside it encoders need half as much again.
@@ -48,8 +53,8 @@ Input load(const Job& job, Report& report) {
     input.dimension = matrix.column_count;
   }
   if (!job.coefficient_weights.empty()) {
-    input.scales =
-        read_coefficient_scales(job.coefficient_weights, input.dimension, signal_bytes_limit());
+    input.coefficient_weights =
+        read_coefficient_weights(job.coefficient_weights, input.dimension, signal_bytes_limit());
   }
   if (job.weigh_by_area) input.point_weights = vertex_areas(input.scene);
   // Only now, as it reads the files: those that are too large are refused before.
@@ -66,6 +71,10 @@ cpca::Options make_options(const Job& job, const Input& input) {
   if (job.method == "vq") options.component_count = 0;
   if (job.method == "pca") options.cluster_count = 1;
   options.max_component_count = job.max_component_count;
+  if (input.document && 2 * options.component_count > gltf::kMaxComponentCount &&
+      options.max_component_count == 0) {
+    options.max_component_count = gltf::kMaxComponentCount;
+  }
   options.iterations = job.iterations.value_or(options.iterations);
   options.seed = job.seed;
   options.point_weights = input.point_weights;
@@ -78,46 +87,113 @@ cpca::StorageCost cost_in_file(const Job& job) {
   return {.bytes_per_point = 4,
           .bytes_per_weight = cpca::bytes_of(format),
           .weight_group = job.method == "adaptive" ? 1u : 4u,
-          .bytes_per_cluster = 2 * sizeof(std::uint16_t)};
+          .bytes_per_cluster = 2 * sizeof(std::uint16_t),
+          .max_component_count = gltf::kMaxComponentCount};
 }
 
 /// What reclassification and small weights may add to the error must fit below the bound as well.
+/// Of the largest error of a point reclassification takes only what is left.
 cpca::Bound bound_of_encoder(const Job& job) {
-  constexpr double kWeightShare = 0.01;
   cpca::Bound bound = job.bound;
-  if (job.output.empty()) return bound;
+  if (!job.signal.empty()) return bound;
   bound.cost = cost_in_file(job);
   if (!bound.max_error) return bound;
-  const double budget = job.storage.is_incoherent ? 0.0 : job.storage.coherence.error_budget;
-  *bound.max_error /= std::sqrt((1.0 + budget) * (1.0 + kWeightShare));
+  const bool spends = !job.storage.is_incoherent && bound.norm == cpca::Norm::rmse;
+  const double budget = spends ? job.storage.coherence.error_budget : 0.0;
+  *bound.max_error /= std::sqrt((1.0 + budget) * (1.0 + cpca::kMaxAddedError));
   return bound;
 }
 
-cpca::Encoded encode(const Job& job, const Input& input) {
-  auto* const encoder = job.method == "adaptive"    ? cpca::encode_adaptive
-                        : job.method == "iterative" ? cpca::encode_iterative
-                                                    : cpca::encode_static;
+nlohmann::ordered_json to_json(const cpca::Found& found) {
+  auto trials = nlohmann::ordered_json::array();
+  for (const cpca::Trial& trial : found.trials) {
+    trials.push_back({{"cluster_count", trial.choice.cluster_count},
+                      {"component_count", trial.choice.component_count},
+                      {"relative_error", trial.error},
+                      {"bytes", trial.bytes},
+                      {"warm", trial.is_warm},
+                      {"seconds", trial.seconds}});
+  }
+  return {{"sampled_points", found.sampled_count},
+          {"seconds", found.seconds},
+          {"cost", found.cost},
+          {"flops_cost", found.flops_cost},
+          {"trials", trials}};
+}
+
+cpca::Encoded encode(const Job& job, const Input& input, Report& report) {
+  const cpca::Method method = job.method == "adaptive"    ? cpca::Method::adaptive
+                              : job.method == "iterative" ? cpca::Method::iterative
+                                                          : cpca::Method::fixed;
   const cpca::Options options = make_options(job, input);
   const auto dimension = static_cast<int>(input.dimension);
   if (!job.bound.max_error && !job.bound.max_bytes) {
-    return encoder(input.transfer.values, dimension, options);
+    return cpca::encode(method, input.transfer.values, dimension, options);
   }
-  return cpca::encode_within(bound_of_encoder(job), encoder, input.transfer.values, dimension,
-                             options);
+  cpca::Found found =
+      cpca::encode_within(bound_of_encoder(job), method, input.transfer.values, dimension, options);
+  log::info("the search took as long as {:.2f} encodings", found.cost);
+  report.json()["search"] = to_json(found);
+  return std::move(found.encoded);
 }
 
-void report_encoding(const cpca::Encoded& encoded, const Input& input, Report& report) {
+/// Reclassifies and rounds weights of a scaled signal's encoding within the bound of the job.
+cpca::Storage prepare_storage(const Job& job, const Input& input, cpca::Encoding& encoding,
+                              Report& report) {
+  cpca::StorageOptions options = job.storage;
+  options.limits.point_weights = input.point_weights;
+  if (job.bound.max_error) {
+    const double square =
+        *job.bound.max_error * *job.bound.max_error *
+        cpca::weighted_energy(input.transfer.values, encoding.point_count, input.point_weights);
+    if (job.bound.norm == cpca::Norm::rmse) {
+      options.limits.total = square;
+    } else {
+      options.limits.point = square / static_cast<double>(encoding.point_count);
+    }
+  }
+  return cpca::prepare_storage(input.transfer.values, input.scene.indices(),
+                               input.transfer.row_count, options, encoding, report);
+}
+
+/// Figures of what is stored, weighted ones too where there are weights. Throws Error (failed) when
+/// these are beyond max_error: the search left room, which given weights may exceed.
+void report_encoding(const Job& job, const Input& input, const cpca::Encoded& encoded,
+                     Report& report) {
   const StageTimer timer(report, "errors");
   std::vector<cpca::Group> groups;
   for (const auto& block : input.transfer.blocks) {
     groups.push_back({block.name, block.vertex_count});
   }
-  report.json().update(cpca::to_json(encoded, input.transfer.values, groups));
-  report.json()["blas"] = linalg::blas_description();
+  auto& json = report.json();
+  json.update(cpca::to_json(encoded, input.transfer.values, groups));
+  json["blas"] = linalg::blas_description();
+  const Errors errors = measure(encoded.encoding, input.transfer.values, input.weights());
+  const Errors plain{.squared = json["squared_error"],
+                     .energy = json["signal_energy"],
+                     .largest = json["max_point_error"],
+                     .point_count = encoded.encoding.point_count};
+  json["relative_max"] = plain.relative_max();
+  if (!input.weights().empty()) {
+    json["weighted_squared_error"] = errors.squared;
+    json["weighted_signal_energy"] = errors.energy;
+    json["weighted_relative_rmse"] = errors.relative_rmse();
+    json["weighted_max_point_error"] = errors.largest;
+    json["weighted_relative_max"] = errors.relative_max();
+  }
+  if (!job.bound.max_error) return;
+  const double found =
+      job.bound.norm == cpca::Norm::rmse ? errors.relative_rmse() : errors.relative_max();
+  if (found > *job.bound.max_error) {
+    throw_failed("weights as small as --weights asks for are not within --max-error",
+                 {.found = fmt::format("a relative error of {:.6g}", found),
+                  .expected = fmt::format("at most {:.6g}", *job.bound.max_error),
+                  .advice = "Take --weights auto."});
+  }
 }
 
-void save(const Job& job, Input& input, const cpca::Storage& storage, cpca::Encoding encoding,
-          Report& report) {
+void save_model(const Job& job, Input& input, const cpca::Storage& storage, cpca::Encoding encoding,
+                Report& report) {
   const signal::TransferSignal& signal = input.transfer;
   const gltf::PrecomputedTransfer transfer{.band_count = signal.band_count,
                                            .row_count = signal.row_count,
@@ -137,10 +213,47 @@ void save(const Job& job, Input& input, const cpca::Storage& storage, cpca::Enco
                   .expected = fmt::format("at most {}", *job.bound.max_bytes),
                   .advice = "Add --weights unorm16 --no-coherence, or allow some more."});
   }
-  const StageTimer timer(report, "save");
   input.document->set_precomputed_transfer(transfer);
   input.document->save_glb(job.output, job.no_clobber);
-  report.add_output(job.output);
+}
+
+/// docs/tools/prt-compress.md, "Signals of your own".
+void save_arrays(const Job& job, const cpca::Encoding& encoding) {
+  const auto points = encoding.point_count, n = static_cast<std::size_t>(encoding.dimension),
+             clusters = static_cast<std::size_t>(encoding.cluster_count),
+             components = static_cast<std::size_t>(encoding.component_count);
+  const bool is_small = clusters <= 65536;
+  const std::vector<std::uint16_t> small(
+      encoding.cluster_of_point.begin(),
+      is_small ? encoding.cluster_of_point.end() : encoding.cluster_of_point.begin());
+  std::vector<std::uint32_t> counts = encoding.component_counts;
+  if (counts.empty()) counts.assign(clusters, static_cast<std::uint32_t>(components));
+  const std::vector<signal::Array> arrays{
+      is_small ? signal::make_array("cluster_of_point", "<u2", {points}, small)
+               : signal::make_array("cluster_of_point", "<u4", {points}, encoding.cluster_of_point),
+      signal::make_array("means", "<f4", {clusters, n}, encoding.means),
+      signal::make_array("bases", "<f4", {clusters, components, n}, encoding.bases),
+      signal::make_array("weights", "<f4", {points, components}, encoding.weights),
+      signal::make_array("component_counts", "<u4", {clusters}, counts)};
+  signal::write_npz(job.output, arrays, job.no_clobber);
+}
+
+/// Numbers of the report that were measured in other units: squared errors of the scaled signal.
+void rescale(double square, cpca::Encoded& encoded, cpca::Storage& storage) {
+  for (cpca::Level& level : encoded.levels) {
+    for (double& error : level.errors) error *= square;
+  }
+  if (!storage.coherence) return;
+  storage.coherence->initial_error *= square;
+  storage.coherence->final_error *= square;
+}
+
+void warn_of_size(const nlohmann::ordered_json& json) {
+  if (json["compression_ratio"].get<double>() >= 1.0) return;
+  log::warning(
+      "the result is larger than the signal: {} bytes, which were {}. Ask for fewer clusters or "
+      "components",
+      json["bytes"].get<std::size_t>(), json["signal_bytes"].get<std::size_t>());
 }
 
 }  // namespace
@@ -149,28 +262,30 @@ void run(const Job& job, Report& report) {
   check(job);
   Input input = load(job, report);
   std::vector<float>& values = input.transfer.values;
-  if (!input.scales.empty()) scale_rows(input.scales, values);
-  cpca::Encoded encoded = encode(job, input);
+  const Scaling scaling(values, input.coefficient_weights);
+  scaling.apply(values);
+  cpca::Encoded encoded = encode(job, input, report);
   for (const cpca::Stage& stage : encoded.stages) report.add_stage(stage.name, stage.seconds);
   cpca::Storage storage;
-  if (input.document) {
-    storage = cpca::prepare_storage(values, input.scene.indices(), input.transfer.row_count,
-                                    job.storage, encoded.encoding, report);
+  if (input.document) storage = prepare_storage(job, input, encoded.encoding, report);
+  scaling.undo(values);
+  scaling.undo(storage.weight_format, encoded.encoding);
+  rescale(scaling.square(), encoded, storage);
+  report_encoding(job, input, encoded, report);
+  if (input.document) report.json()["weights"] = cpca::name_of(storage.weight_format);
+  if (storage.coherence) {
+    report.json().update(cpca::to_json(*storage.coherence, job.storage.coherence));
   }
-  if (!input.scales.empty()) {
-    unscale_rows(input.scales, values);
-    unscale_rows(input.scales, encoded.encoding.means);
-    unscale_rows(input.scales, encoded.encoding.bases);
+  if (!job.output.empty()) {
+    const StageTimer timer(report, "save");
+    if (input.document) {
+      save_model(job, input, storage, std::move(encoded.encoding), report);
+    } else {
+      save_arrays(job, encoded.encoding);
+    }
+    report.add_output(job.output);
   }
-  report_encoding(encoded, input, report);
-  if (input.document) save(job, input, storage, std::move(encoded.encoding), report);
-  const auto& json = report.json();
-  if (json["compression_ratio"].get<double>() < 1.0) {
-    log::warning(
-        "the result is larger than the signal: {} bytes, which were {}. Ask for fewer "
-        "clusters or components",
-        json["bytes"].get<std::size_t>(), json["signal_bytes"].get<std::size_t>());
-  }
+  warn_of_size(report.json());
 }
 
 }  // namespace prt::compress

@@ -1,5 +1,5 @@
 // What prt-compress does: a transfer signal, or one of any origin, through an encoder of clustered
-// PCA into the glTF file that it belongs to.
+// PCA into the glTF file that it belongs to, or into plain arrays.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@
 namespace prt::compress {
 
 struct Job {
-  std::filesystem::path model, transfer, output;  ///< both inputs, or `signal` alone
-  std::filesystem::path signal;                   ///< .npy, a point a row: no output, only a report
-  std::filesystem::path coefficient_weights;      ///< .npy, of squares; empty: 1 each
-  bool weigh_by_area = false;                     ///< points by the area around their vertices
-  std::string method = "iterative";               ///< vq, pca, static, iterative, adaptive
+  std::filesystem::path model, transfer, output;      ///< both inputs, or `signal` alone
+  std::filesystem::path signal;                       ///< .npy, a point a row; output .npz or none
+  std::filesystem::path coefficient_weights;          ///< .npy, of squares; empty: 1 each
+  bool weigh_by_area = false;                         ///< points by the area around their vertices
+  std::string method = "iterative";                   ///< vq, pca, static, iterative, adaptive
   std::optional<int> cluster_count, component_count;  ///< as asked for
   int max_component_count = 0;                        ///< as in cpca::Options
   std::optional<int> iterations;

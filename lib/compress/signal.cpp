@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -42,39 +43,61 @@ std::vector<float> vertex_areas(const mesh::Scene& scene) {
   return weights;
 }
 
-std::vector<float> read_coefficient_scales(const std::filesystem::path& path, std::size_t dimension,
-                                           std::size_t max_bytes) {
-  std::vector<float> scales = signal::read_npy(path, max_bytes).values;
-  if (scales.size() != dimension) {
+std::vector<float> read_coefficient_weights(const std::filesystem::path& path,
+                                            std::size_t dimension, std::size_t max_bytes) {
+  std::vector<float> weights = signal::read_npy(path, max_bytes).values;
+  if (weights.size() != dimension) {
     throw_bad_input("another number of coefficient weights",
                     {.file = path.string(),
-                     .found = std::to_string(scales.size()),
+                     .found = std::to_string(weights.size()),
                      .expected = std::to_string(dimension)});
   }
-  for (std::size_t i = 0; i < scales.size(); ++i) {
-    if (!(scales[i] > 0.0f) || !std::isfinite(scales[i])) {
-      throw_bad_input("not a weight", {.file = path.string(),
-                                       .element = fmt::format("coefficient {}", i),
-                                       .found = fmt::format("{}", scales[i]),
-                                       .expected = "a number above 0"});
-    }
-    scales[i] = std::sqrt(scales[i]);
+  const auto bad = std::find_if_not(weights.begin(), weights.end(), [](float w) { return w > 0; });
+  if (bad != weights.end()) {
+    throw_bad_input("not a weight",
+                    {.file = path.string(),
+                     .element = fmt::format("coefficient {}", bad - weights.begin()),
+                     .found = fmt::format("{}", *bad),
+                     .expected = "a number above 0"});
   }
-  return scales;
+  return weights;
 }
 
-void scale_rows(std::span<const float> scales, std::span<float> rows) {
-  parallel_for(rows.size() / scales.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * scales.size(); i < end * scales.size(); ++i) {
-      rows[i] *= scales[i % scales.size()];
+double Errors::relative_rmse() const { return energy > 0.0 ? std::sqrt(squared / energy) : 0.0; }
+
+double Errors::relative_max() const {
+  return energy > 0.0 ? std::sqrt(largest * static_cast<double>(point_count) / energy) : 0.0;
+}
+
+Errors measure(const cpca::Encoding& encoding, std::span<const float> signal,
+               const Weights& weights) {
+  const auto n = static_cast<std::size_t>(encoding.dimension);
+  std::vector<Errors> blocks(block_count(encoding.point_count, kBlock));
+  parallel_for(encoding.point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> row(n);
+    Errors& block = blocks[begin / kBlock];
+    for (std::size_t p = begin; p < end; ++p) {
+      cpca::reconstruct(encoding, p, row);
+      const double point_weight = weights.points.empty() ? 1.0 : double{weights.points[p]};
+      double error = 0.0;
+      for (std::size_t j = 0; j < n; ++j) {
+        const double weight =
+            point_weight * (weights.coefficients.empty() ? 1.0 : double{weights.coefficients[j]});
+        const double value = signal[p * n + j], difference = value - double{row[j]};
+        error += weight * difference * difference;
+        block.energy += weight * value * value;
+      }
+      block.squared += error;
+      block.largest = std::max(block.largest, error);
     }
   });
-}
-
-void unscale_rows(std::span<const float> scales, std::span<float> rows) {
-  std::vector<float> inverse;
-  for (const float scale : scales) inverse.push_back(1.0f / scale);
-  scale_rows(inverse, rows);
+  Errors errors{.point_count = encoding.point_count};
+  for (const Errors& block : blocks) {
+    errors.squared += block.squared;
+    errors.energy += block.energy;
+    errors.largest = std::max(errors.largest, block.largest);
+  }
+  return errors;
 }
 
 }  // namespace prt::compress

@@ -1,8 +1,9 @@
-// Weights of the coefficients and points of a signal.
+// Weights of the coefficients and points of a signal, and errors by them.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -15,12 +16,28 @@ namespace prt::compress {
 /// Error (bad_input) for a scene without area.
 std::vector<float> vertex_areas(const mesh::Scene& scene);
 
-/// Roots of the weights in a .npy file of `dimension` numbers, all > 0. Throws Error (bad_input).
-std::vector<float> read_coefficient_scales(const std::filesystem::path& path, std::size_t dimension,
-                                           std::size_t max_bytes);
+/// The weights in a .npy file of `dimension` numbers, all > 0. Throws Error (bad_input).
+std::vector<float> read_coefficient_weights(const std::filesystem::path& path,
+                                            std::size_t dimension, std::size_t max_bytes);
 
-/// Multiplies every row of a signal by the scales, or divides it.
-void scale_rows(std::span<const float> scales, std::span<float> rows);
-void unscale_rows(std::span<const float> scales, std::span<float> rows);
+/// Of squares: of each point and each coefficient; empty: 1 each.
+struct Weights {
+  std::span<const float> points = {}, coefficients = {};
+
+  bool empty() const { return points.empty() && coefficients.empty(); }
+};
+
+struct Errors {
+  double squared = 0.0, energy = 0.0, largest = 0.0;  ///< as cpca::Figures, all weighted
+  std::size_t point_count = 0;
+
+  /// By the norms of cpca::Norm; 0 for a signal without energy.
+  double relative_rmse() const;
+  double relative_max() const;
+};
+
+/// Squared errors e_p = w_p Σ_j w_j (x_pj - x̃_pj)² of an encoding as it is, summed in double.
+Errors measure(const cpca::Encoding& encoding, std::span<const float> signal,
+               const Weights& weights);
 
 }  // namespace prt::compress

@@ -42,6 +42,11 @@ void Clusterer::set_rows(const Rows& rows) {
   subspaces_ = Subspaces(subspaces_.cluster_count(), padded(rows.stride), subspaces_.capacity);
 }
 
+void Clusterer::set_labels(std::span<const std::uint32_t> labels) {
+  labels_.assign(labels.begin(), labels.end());
+  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+}
+
 void Clusterer::set_used(std::span<const std::uint32_t> used) {
   std::copy(used.begin(), used.end(), subspaces_.used.begin());
 }

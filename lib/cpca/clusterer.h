@@ -42,12 +42,16 @@ class Clusterer {
   void set_used(std::span<const std::uint32_t> used);
   /// How many coordinates of the rows count. Means and vectors of more are right after update().
   void set_dimension(std::size_t dimension) { subspaces_.dimension = dimension; }
+  /// Points to these clusters. Means and vectors are right after update().
+  void set_labels(std::span<const std::uint32_t> labels);
   /// The same points in other coordinates. Clusters keep their points and nothing else.
   void set_rows(const Rows& rows);
 
   const Subspaces& subspaces() const { return subspaces_; }
   const PointsByCluster& points() const { return sorted_; }
   const std::vector<std::uint32_t>& labels() const { return labels_; }
+  /// ‖x_p - x̃_p‖² of each point, in the coordinates of the rows, after classify().
+  const std::vector<float>& errors() const { return errors_; }
   double flops() const { return flops_; }
 
  private:

@@ -42,7 +42,8 @@ Coherence make_coherent(std::span<const float> signal, std::span<const std::uint
   Coherence coherence;
   coherence.triangle_count = indices.size() / 3;
   coherence.sent_initial = sent_triangle_count(indices, encoding.cluster_of_point);
-  const Reclassification moved = reclassify(signal, indices, options.error_budget, encoding);
+  const Reclassification moved =
+      reclassify(signal, indices, options.error_budget, encoding, options.limits);
   coherence.moved_count = moved.moved_count;
   coherence.initial_error = moved.initial_error;
   coherence.final_error = moved.final_error;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cpca/encoding.h"
+#include "cpca/error_limits.h"
 
 namespace prt::cpca {
 
@@ -16,6 +17,7 @@ struct CoherenceOptions {
   double error_budget =
       0.05;  ///< that reclassification may add, of the initial squared error; >= 0
   std::uint32_t register_budget = 256;  ///< vec4 constants of a supercluster
+  ErrorLimits limits = {};              ///< that reclassification keeps to, and its weights
 };
 
 struct Coherence {
@@ -25,7 +27,7 @@ struct Coherence {
   std::size_t sent_reclassified = 0;              ///< after reclassification,
   std::size_t sent_superclustered = 0;            ///< and by superclusters
   std::size_t moved_count = 0;                    ///< moves of points
-  double initial_error = 0.0, final_error = 0.0;  ///< squared, over all points
+  double initial_error = 0.0, final_error = 0.0;  ///< squared, weighted, over all points
 };
 
 /// Reclassifies points, finds superclusters and sorts the clusters by them. `signal` is what the

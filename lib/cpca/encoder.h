@@ -11,6 +11,12 @@
 
 namespace prt::cpca {
 
+/// Where to start from in place of seeds: clusters of an encoding with about as many vectors.
+struct Start {
+  std::span<const std::uint32_t> labels = {};  ///< cluster of each point; empty: from seeds
+  double squared_error = 0.0;  ///< of that encoding; how many coordinates matter depends on it
+};
+
 struct Options {
   int cluster_count = 256;  ///< m_c
   int component_count = 8;  ///< n', 0 to the dimension
@@ -20,6 +26,7 @@ struct Options {
   /// Of each point, finite and >= 0, such as the area around a vertex: errors are weighted with it.
   /// Empty: 1 each.
   std::span<const float> point_weights = {};
+  Start start = {};  ///< iterative encoders then begin with all vectors, in one level
 };
 
 struct Stage {

@@ -16,33 +16,54 @@ constexpr int kSteps = 1, kFirstSteps = 8;
 /// most half.
 constexpr int kLastIterations = 4;
 
+std::vector<float> first_means(std::span<const float> signal, std::size_t dimension,
+                               const Options& options) {
+  const auto count = static_cast<std::size_t>(options.cluster_count);
+  return options.start.labels.empty()
+             ? seed_means(signal, dimension, count, options.seed)
+             : fit_means(signal, dimension, options.start.labels, count, options.point_weights);
+}
+
 }  // namespace
 
 IterativeEncoder::IterativeEncoder(std::span<const float> signal, std::size_t dimension,
                                    const Options& options, std::size_t capacity)
     : options_(options),
       space_(signal, dimension, options.point_weights),
-      clusterer_(
-          space_.rows(), space_.dimension(),
-          space_.convert(seed_means(signal, dimension,
-                                    static_cast<std::size_t>(options.cluster_count), options.seed)),
-          capacity),
-      progress_("encoding",
-                static_cast<std::size_t>(options.iterations) *
-                    (static_cast<std::size_t>(options.component_count) + 1),
-                "iterations") {}
+      clusterer_(space_.rows(), space_.dimension(),
+                 space_.convert(first_means(signal, dimension, options)), capacity),
+      progress_(
+          "encoding",
+          static_cast<std::size_t>(options.iterations) *
+              (options.start.labels.empty() ? static_cast<std::size_t>(options.component_count) + 1
+                                            : 1),
+          "iterations") {}
 
 std::vector<Level> IterativeEncoder::run() {
-  std::vector<Level> levels;
-  for (int count = 0; count <= options_.component_count; ++count) {
-    if (count > 0) start_level(count, levels.back().errors.back());
-    levels.push_back({.component_count = count, .errors = {}});
-    const bool is_refined = count == options_.component_count && space_.has_axes();
-    const int last = is_refined ? std::min(kLastIterations, options_.iterations / 2) : 0;
-    run_level(levels.back(), options_.iterations - last);
-    if (last > 0) refine(levels.back(), last);
+  if (options_.start.labels.empty()) {
+    for (int count = 0; count <= options_.component_count; ++count) run_level();
+  } else {
+    clusterer_.set_labels(options_.start.labels);
+    space_.fit_to(options_.start.squared_error);
+    move_to_space(options_.component_count);
+    iterate_level(options_.component_count);
   }
-  return levels;
+  return std::move(levels_);
+}
+
+const Level& IterativeEncoder::run_level() {
+  const auto count = static_cast<int>(levels_.size());
+  if (count > 0) start_level(count, levels_.back().errors.back());
+  iterate_level(count);
+  return levels_.back();
+}
+
+void IterativeEncoder::iterate_level(int count) {
+  levels_.push_back({.component_count = count, .errors = {}});
+  const bool is_refined = count == options_.component_count && space_.has_axes();
+  const int last = is_refined ? std::min(kLastIterations, options_.iterations / 2) : 0;
+  iterate(levels_.back(), options_.iterations - last);
+  if (last > 0) refine(levels_.back(), last);
 }
 
 void IterativeEncoder::refine(Level& level, int iterations) {
@@ -76,7 +97,7 @@ void IterativeEncoder::move_to_space(int count) {
   update(count, kFirstSteps);
 }
 
-void IterativeEncoder::run_level(Level& level, int iterations) {
+void IterativeEncoder::iterate(Level& level, int iterations) {
   const int count = level.component_count, last = iterations - 1;
   bool settled = false;  // nothing moved in the last pass
   for (int i = 0; i <= last; ++i) {

@@ -19,8 +19,10 @@ class IterativeEncoder {
   IterativeEncoder(std::span<const float> signal, std::size_t dimension, const Options& options,
                    std::size_t capacity);
 
-  /// Iterates at no vectors, one, up to options.component_count.
+  /// Iterates at no vectors, one, up to options.component_count, or only there from a start.
   std::vector<Level> run();
+  /// The next of these levels: no vectors, then one more each time.
+  const Level& run_level();
 
   Clusterer& clusterer() { return clusterer_; }
   const WorkingSpace& space() const { return space_; }
@@ -28,7 +30,8 @@ class IterativeEncoder {
  private:
   void update(int count, int steps);
   void start_level(int count, double error);
-  void run_level(Level& level, int iterations);
+  void iterate_level(int count);
+  void iterate(Level& level, int iterations);
   /// More of them in all coordinates.
   void refine(Level& level, int iterations);
   void move_to_space(int count);
@@ -36,6 +39,7 @@ class IterativeEncoder {
   const Options& options_;
   WorkingSpace space_;
   Clusterer clusterer_;
+  std::vector<Level> levels_;
   Progress progress_;
 };
 

@@ -55,24 +55,25 @@ struct Queued {
 class Reclassifier {
  public:
   Reclassifier(std::span<const float> signal, std::span<const std::uint32_t> indices,
-               Encoding& encoding)
+               const ErrorLimits& limits, Encoding& encoding)
       : signal_(signal),
         indices_(indices),
+        limits_(limits),
         encoding_(encoding),
         triangles_(indices, encoding.point_count),
-        errors_(point_errors(encoding, signal)),
+        errors_(weighted_errors(encoding, signal, limits.point_weights)),
         known_errors_(encoding.point_count),
         versions_(encoding.point_count) {}
 
   Reclassification run(double error_budget) {
     Reclassification result{.initial_error = total_error()};
-    room_ = error_budget * result.initial_error;
+    room_ = std::min(error_budget * result.initial_error, limits_.total - result.initial_error);
     queue_all();
     while (!queue_.empty()) {
       const auto [move, version] = queue_.top();
       queue_.pop();
       if (version != versions_[move.point]) continue;
-      if (move.increase > room_) {
+      if (move.increase > 0.0 && move.increase > room_) {
         queue(move.point);  // perhaps another cluster fits
         continue;
       }
@@ -115,14 +116,16 @@ class Reclassifier {
     return clusters;
   }
 
-  /// Of a point in a cluster; remembered, since a point is asked again whenever a neighbour moves.
+  /// Weighted error of a point in a cluster; remembered, since a point is asked again whenever a
+  /// neighbour moves.
   double error_in(std::uint32_t point, std::uint32_t cluster) {
     auto& known = known_errors_[point];
     for (const auto& [known_cluster, error] : known) {
       if (known_cluster == cluster) return error;
     }
     std::vector<float> weights(static_cast<std::size_t>(encoding_.component_count));
-    const double error = project_point(encoding_, static_cast<int>(cluster), row(point), weights);
+    const double error = limits_.weight(point) *
+                         project_point(encoding_, static_cast<int>(cluster), row(point), weights);
     known.emplace_back(cluster, error);
     return error;
   }
@@ -134,8 +137,10 @@ class Reclassifier {
     for (const std::uint32_t cluster : neighbour_clusters(point)) {
       const int reduction = sent - sent_count(point, cluster);
       if (reduction <= 0) continue;
-      const Move move{point, cluster, reduction, error_in(point, cluster) - errors_[point]};
-      if (move.increase <= room_ && (!best || is_better(move, *best))) best = move;
+      const double error = error_in(point, cluster);
+      const Move move{point, cluster, reduction, error - errors_[point]};
+      if (move.increase > 0.0 && (move.increase > room_ || error > limits_.point)) continue;
+      if (!best || is_better(move, *best)) best = move;
     }
     return best;
   }
@@ -160,6 +165,7 @@ class Reclassifier {
   void apply(const Move& move) {
     const auto components = static_cast<std::size_t>(encoding_.component_count);
     errors_[move.point] =
+        limits_.weight(move.point) *
         project_point(encoding_, static_cast<int>(move.cluster), row(move.point),
                       std::span(encoding_.weights).subspan(move.point * components, components));
     encoding_.cluster_of_point[move.point] = move.cluster;
@@ -175,6 +181,7 @@ class Reclassifier {
 
   std::span<const float> signal_;
   std::span<const std::uint32_t> indices_;
+  const ErrorLimits& limits_;
   Encoding& encoding_;
   TrianglesOfPoints triangles_;
   std::vector<double> errors_;  // of every point where it is
@@ -198,9 +205,9 @@ bool is_better(const Move& a, const Move& b) {
 }
 
 Reclassification reclassify(std::span<const float> signal, std::span<const std::uint32_t> indices,
-                            double error_budget, Encoding& encoding) {
+                            double error_budget, Encoding& encoding, const ErrorLimits& limits) {
   assert(signal.size() == encoding.point_count * static_cast<std::size_t>(encoding.dimension));
-  return Reclassifier(signal, indices, encoding).run(error_budget);
+  return Reclassifier(signal, indices, limits, encoding).run(error_budget);
 }
 
 }  // namespace prt::cpca

@@ -4,217 +4,236 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
+#include <cstdlib>
+#include <memory>
+#include <numeric>
+#include <optional>
 
 #include "core/error.h"
 #include "core/log.h"
-#include "cpca/figures.h"
-#include "cpca/stage_clock.h"
+#include "core/stopwatch.h"
+#include "cpca/error_limits.h"
+#include "cpca/search_resize.h"
+#include "cpca/search_survey.h"
 
 namespace prt::cpca {
 
 namespace {
 
-constexpr int kSurveyIterations = 4, kMaxComponents = 24, kMaxEncodings = 3;
-constexpr std::size_t kLeastClusters = 8, kMostClusters = 4096, kPointsPerCluster = 12,
-                      kIndexedClusters = 65536;
-/// Squared error of the iterative encoder over that of a static one, to begin with.
-constexpr double kFirstGain = 0.5;
+/// Trials until something is within the bound.
+constexpr std::size_t kMostTrials = 12;
+/// Encodings from seeds that a search with trials that try to do better may take as long as.
+constexpr double kMostCost = 3.0;
+/// What another trial must promise: the share of bytes or error that it saves.
+constexpr double kWorthwhile = 0.015;
+/// Room below max_error at first; twice as much after every miss.
+constexpr double kMargin = 0.002;
+/// Clusters of an encoding with that many vectors more or fewer are still a good start.
+constexpr int kNearComponents = 2;
 
-struct Choice {
-  int cluster_count = 0, component_count = 0;
-  double error = 0.0;  ///< relative, of the survey
-  std::size_t bytes = 0;
+bool is_near(const Choice& a, const Choice& b) {
+  return std::abs(a.component_count - b.component_count) <= kNearComponents &&
+         a.cluster_count <= 2 * b.cluster_count && b.cluster_count <= 2 * a.cluster_count;
+}
 
-  bool operator==(const Choice&) const = default;
+struct Made {
+  Encoded encoded;
+  Trial trial;
 };
 
-std::size_t padded(std::size_t weight_count, const StorageCost& cost) {
-  return (weight_count + cost.weight_group - 1) / cost.weight_group * cost.weight_group;
-}
+class Search {
+ public:
+  Search(const Bound& bound, Method method, std::span<const float> signal, int dimension,
+         const Options& options)
+      : bound_(bound),
+        aim_(bound),
+        method_(method),
+        signal_(signal),
+        dimension_(dimension),
+        options_(options),
+        size_{signal.size() / static_cast<std::size_t>(dimension),
+              static_cast<std::size_t>(dimension)},
+        energy_(weighted_energy(signal, size_.point_count, options.point_weights)) {}
 
-std::size_t bytes_of(std::size_t point_count, int dimension, int cluster_count, int component_count,
-                     const StorageCost& cost) {
-  const auto clusters = static_cast<std::size_t>(cluster_count);
-  const auto components = static_cast<std::size_t>(component_count);
-  return cost.total(point_count, point_count * padded(components, cost), clusters,
-                    clusters * components, static_cast<std::size_t>(dimension));
-}
-
-std::size_t bytes_of(const Encoding& encoding, const StorageCost& cost) {
-  std::size_t weights = 0, vectors = 0;
-  const auto count_of = [&](int cluster) {
-    return static_cast<std::size_t>(encoding.component_count_of(cluster));
-  };
-  for (int k = 0; k < encoding.cluster_count; ++k) vectors += count_of(k);
-  for (std::uint32_t cluster : encoding.cluster_of_point) {
-    weights += padded(count_of(static_cast<int>(cluster)), cost);
-  }
-  return cost.total(encoding.point_count, weights, static_cast<std::size_t>(encoding.cluster_count),
-                    vectors, static_cast<std::size_t>(encoding.dimension));
-}
-
-/// As many more clusters as fit into the bytes.
-void fill(Choice& choice, std::size_t max_bytes, std::size_t point_count, int dimension,
-          const StorageCost& cost) {
-  const auto bytes = [&](int clusters) {
-    return bytes_of(point_count, dimension, clusters, choice.component_count, cost);
-  };
-  const std::size_t one = bytes(2) - bytes(1), used = bytes(choice.cluster_count);
-  const std::size_t most = std::min<std::size_t>(
-      {point_count, kIndexedClusters,
-       static_cast<std::size_t>(choice.cluster_count) + (max_bytes - used) / one});
-  choice.cluster_count = static_cast<int>(most);
-  choice.bytes = bytes(choice.cluster_count);
-}
-
-double relative(double squared_error, double largest, const Figures& figures,
-                std::size_t point_count, Norm norm) {
-  if (figures.signal_energy <= 0.0) return 0.0;
-  return norm == Norm::rmse
-             ? std::sqrt(squared_error / figures.signal_energy)
-             : std::sqrt(largest * static_cast<double>(point_count) / figures.signal_energy);
-}
-
-/// Errors of a static encoding with its first 0, 1, … vectors.
-void add_choices(const Encoding& encoding, std::span<const float> signal, const Bound& bound,
-                 std::vector<Choice>& choices) {
-  const std::vector<double> last = point_errors(encoding, signal);
-  const Figures figures = summarize(last, signal);
-  const auto count = static_cast<std::size_t>(encoding.component_count);
-  std::vector<double> errors = last;
-  for (int components = encoding.component_count; components >= 0; --components) {
-    double sum = 0.0, largest = 0.0;
-    for (std::size_t p = 0; p < errors.size(); ++p) {
-      sum += errors[p];
-      largest = std::max(largest, errors[p]);
-      if (components == 0) continue;
-      const double weight = encoding.weights[p * count + static_cast<std::size_t>(components) - 1];
-      errors[p] += weight * weight;
+  Found run() {
+    survey();
+    for (std::optional<Choice> next = choose_next(); next; next = choose_next()) {
+      make(*next);
+      learn();
     }
-    choices.push_back({encoding.cluster_count, components,
-                       relative(sum, largest, figures, errors.size(), bound.norm),
-                       bytes_of(encoding.point_count, encoding.dimension, encoding.cluster_count,
-                                components, bound.cost)});
+    if (!best_) reject();
+    Found found{.encoded = std::move(best_->encoded),
+                .sampled_count = survey_.sampled_count,
+                .trials = std::move(trials_),
+                .seconds = stopwatch_.seconds()};
+    found.encoded.stages = std::move(stages_);
+    found.encoded.flops = flops_;
+    found.cost = found.seconds / cold_seconds_;
+    if (cold_flops_ > 0.0) found.flops_cost = flops_ / cold_flops_;
+    return found;
   }
-}
 
-std::vector<Choice> survey(std::span<const float> signal, int dimension, const Bound& bound,
-                           Options options) {
-  const std::size_t point_count = signal.size() / static_cast<std::size_t>(dimension);
-  const std::size_t most =
-      std::clamp<std::size_t>(point_count / kPointsPerCluster, 1, kMostClusters);
-  options.iterations = kSurveyIterations;
-  options.component_count = std::min(dimension, kMaxComponents);
-  std::vector<Choice> choices;
-  for (std::size_t clusters = std::min(kLeastClusters, most);; clusters *= 2) {
-    options.cluster_count = static_cast<int>(std::min(clusters, most));
-    add_choices(encode_static(signal, dimension, options).encoding, signal, bound, choices);
-    if (clusters >= most) return choices;
+ private:
+  void survey() {
+    if (aim_.max_error) *aim_.max_error = (1.0 - margin_) * *bound_.max_error;
+    survey_ = make_survey(aim_, method_, signal_, dimension_, options_);
+    flops_ = survey_.flops;
+    stages_.push_back({"survey", stopwatch_.seconds()});
   }
-}
 
-/// The best choice if the encoder's errors are `gain` times those of the survey; the one of least
-/// error if none keeps to an error bound.
-Choice choose(std::span<const Choice> choices, const Bound& bound, double gain) {
-  const auto by_error = [](const Choice& a, const Choice& b) {
-    return a.error != b.error ? a.error < b.error : a.bytes < b.bytes;
-  };
-  std::vector<Choice> within;
-  for (const Choice& choice : choices) {
-    if (bound.max_error ? choice.error * gain <= *bound.max_error
-                        : choice.bytes <= *bound.max_bytes) {
-      within.push_back(choice);
+  bool is_within(const Trial& trial) const {
+    return bound_.max_error ? trial.error <= *bound_.max_error : trial.bytes <= *bound_.max_bytes;
+  }
+
+  /// What a choice is worth: less is better.
+  double worth(const Trial& trial) const {
+    return bound_.max_error ? static_cast<double>(trial.bytes) : trial.error;
+  }
+
+  std::optional<Choice> choose_next() {
+    if (trials_.size() >= kMostTrials) return std::nullopt;
+    const Choice choice = choose(survey_.model, aim_, size_, most_clusters(size_.point_count));
+    const bool is_known = std::any_of(trials_.begin(), trials_.end(),
+                                      [&](const Trial& trial) { return trial.choice == choice; });
+    if (!best_) return is_known ? std::nullopt : std::optional(choice);
+    // Bytes of adaptive encodings are not quite those of the choice.
+    const double expected =
+        bound_.max_error ? static_cast<double>(bound_.cost.bytes(size_, choice)) * bytes_share_
+                         : survey_.model.error(choice);
+    if (is_known || expected > (1.0 - kWorthwhile) * worth(best_->trial)) return std::nullopt;
+    return cost_with(choice) > kMostCost ? std::nullopt : std::optional(choice);
+  }
+
+  /// Of the search so far and another trial, in encodings from seeds. With i vectors that is 1 + 2
+  /// + … + (i + 1) times the work of vector quantisation, of which warm ones do the last part.
+  double cost_with(const Choice& choice) const {
+    const bool is_warm = is_near(choice, last_->trial.choice);
+    const double share = is_warm ? 2.0 / (choice.component_count + 2) : 1.0;
+    return share +
+           (cold_flops_ > 0.0 ? flops_ / cold_flops_ : static_cast<double>(trials_.size()) + 1.0);
+  }
+
+  /// Encodes, from the clusters of the last encoding when these are near.
+  void make(const Choice& choice) {
+    const Stopwatch stopwatch;
+    Options options = options_;
+    options.cluster_count = choice.cluster_count;
+    options.component_count = choice.component_count;
+    if (options.max_component_count == 0) {
+      options.max_component_count =
+          std::min(2 * choice.component_count, bound_.cost.max_component_count);
+    }
+    std::vector<std::uint32_t> labels;
+    const bool is_warm = last_ && is_near(choice, last_->trial.choice);
+    if (is_warm) {
+      const std::vector<double> errors =
+          weighted_errors(last_->encoded.encoding, signal_, options_.point_weights);
+      labels = resize_clusters(last_->encoded.encoding, errors, choice.cluster_count);
+      options.start = {labels, std::accumulate(errors.begin(), errors.end(), 0.0)};
+    }
+    last_.reset();
+    auto made = std::make_shared<Made>();
+    made->encoded = encode(method_, signal_, dimension_, options);
+    const Encoding& encoding = made->encoded.encoding;
+    made->trial = {.choice = choice,
+                   .error = relative_error(encoding, signal_, bound_.norm, options.point_weights),
+                   .bytes = bound_.cost.bytes(encoding),
+                   .is_warm = is_warm,
+                   .seconds = stopwatch.seconds()};
+    last_ = std::move(made);
+  }
+
+  void learn() {
+    const Trial& trial = last_->trial;
+    trials_.push_back(trial);
+    log::info("{} clusters, {} components{}: relative error {:.4g}, {} bytes, {:.2f} s",
+              trial.choice.cluster_count, trial.choice.component_count,
+              trial.is_warm ? " from the last" : "", trial.error, trial.bytes, trial.seconds);
+    flops_ += last_->encoded.flops;
+    const auto& stages = last_->encoded.stages;
+    stages_.insert(stages_.end(), stages.begin(), stages.end());
+    if (!trial.is_warm) {
+      cold_seconds_ = trial.seconds;
+      cold_flops_ = last_->encoded.flops;
+      learn_column();
+    }
+    survey_.model.correct(trial.choice, trial.error);
+    bytes_share_ = static_cast<double>(trial.bytes) /
+                   static_cast<double>(bound_.cost.bytes(size_, trial.choice));
+    if (is_within(trial)) {
+      if (!best_ || worth(trial) < worth(best_->trial)) best_ = last_;
+    } else if (bound_.max_error) {
+      margin_ = std::min(0.5, 2.0 * margin_);
+      *aim_.max_error = (1.0 - margin_) * *bound_.max_error;
+    } else {
+      // Small clusters of adaptive encodings have more vectors than chosen.
+      const double share =
+          static_cast<double>(*bound_.max_bytes) / static_cast<double>(trial.bytes);
+      *aim_.max_bytes =
+          static_cast<std::size_t>(0.98 * share * static_cast<double>(*aim_.max_bytes));
     }
   }
-  if (bound.max_error && within.empty()) {
-    return *std::min_element(choices.begin(), choices.end(), by_error);
+
+  /// What an encoding tells about fewer vectors; of the largest errors iterative ones do not.
+  void learn_column() {
+    if (method_ == Method::fixed) {
+      survey_.model.correct(
+          {last_->trial.choice.cluster_count,
+           relative_errors(last_->encoded.encoding, signal_, bound_.norm, options_.point_weights)});
+      return;
+    }
+    if (bound_.norm == Norm::maximum || energy_ <= 0.0) return;
+    Column column{last_->trial.choice.cluster_count, {}};
+    for (const Level& level : last_->encoded.levels) {
+      column.errors.push_back(std::sqrt(level.errors.back() / energy_));
+    }
+    // The adaptation is a level of its own.
+    column.errors.resize(static_cast<std::size_t>(last_->trial.choice.component_count) + 1);
+    survey_.model.correct(column);
   }
-  if (within.empty()) {
-    const auto least = std::min_element(choices.begin(), choices.end(),
-                                        [](auto& a, auto& b) { return a.bytes < b.bytes; });
-    throw Error(ErrorKind::failed, "no encoding is as small",
-                {.found = fmt::format("at least {} bytes", least->bytes),
-                 .expected = fmt::format("at most {}", *bound.max_bytes)});
+
+  [[noreturn]] void reject() const {
+    const auto least =
+        std::min_element(trials_.begin(), trials_.end(),
+                         [&](const Trial& a, const Trial& b) { return a.error < b.error; });
+    if (bound_.max_error) {
+      throw_failed("no encoding found within the error",
+                   {.found = fmt::format("a relative error of {:.4g}", least->error),
+                    .expected = fmt::format("at most {:.4g}", *bound_.max_error)});
+    }
+    throw_failed("no encoding found that is as small",
+                 {.expected = fmt::format("at most {} bytes", *bound_.max_bytes),
+                  .advice = "Take --method iterative."});
   }
-  return bound.max_error ? *std::min_element(within.begin(), within.end(),
-                                             [](const Choice& a, const Choice& b) {
-                                               return a.bytes != b.bytes ? a.bytes < b.bytes
-                                                                         : a.error < b.error;
-                                             })
-                         : *std::min_element(within.begin(), within.end(), by_error);
-}
+
+  const Bound bound_;
+  Bound aim_;  ///< what the model is asked for: a little less than the bound
+  const Method method_;
+  const std::span<const float> signal_;
+  const int dimension_;
+  const Options options_;
+  const Size size_;
+  const double energy_;
+  const Stopwatch stopwatch_;
+  double margin_ = kMargin;
+  Survey survey_;
+  std::shared_ptr<Made> last_, best_;
+  std::vector<Trial> trials_;
+  double bytes_share_ = 1.0;  ///< bytes of the last encoding for each that its choice promised
+  std::vector<Stage> stages_;
+  double flops_ = 0.0, cold_flops_ = 0.0, cold_seconds_ = 0.0;
+};
 
 }  // namespace
 
-double relative_error(const Encoding& encoding, std::span<const float> signal, Norm norm) {
-  const Figures figures = summarize(point_errors(encoding, signal), signal);
-  return relative(figures.squared_error, figures.max_point_error, figures, encoding.point_count,
-                  norm);
-}
-
-Encoded encode_within(const Bound& bound, const Encoder& encoder, std::span<const float> signal,
-                      int dimension, const Options& options) {
-  Options tried = options;
-  tried.cluster_count = 1;
-  tried.component_count = 0;
-  check_options(tried);
-  check_signal(signal, dimension, tried);
-  std::vector<Stage> stages;
-  StageClock clock(stages);
-  const std::vector<Choice> choices = survey(signal, dimension, bound, options);
-  clock.finish("survey");
-  std::optional<Encoded> best;
-  double gain = std::sqrt(kFirstGain), least = std::numeric_limits<double>::infinity();
-  std::vector<Choice> done;
-  Bound aim = bound;  // lower than max_bytes after an adaptive encoding of more vectors than chosen
-  while (done.size() < kMaxEncodings) {
-    Choice choice = choose(choices, aim, gain);
-    if (aim.max_bytes) {
-      fill(choice, *aim.max_bytes, signal.size() / static_cast<std::size_t>(dimension), dimension,
-           bound.cost);
-    }
-    if (std::find(done.begin(), done.end(), choice) != done.end()) break;
-    done.push_back(choice);
-    tried.cluster_count = choice.cluster_count;
-    tried.component_count = choice.component_count;
-    Encoded encoded = encoder(signal, dimension, tried);
-    for (const Stage& stage : encoded.stages) stages.push_back(stage);
-    const double error = relative_error(encoded.encoding, signal, bound.norm);
-    const std::size_t bytes = bytes_of(encoded.encoding, bound.cost);
-    log::info("{} clusters, {} components: relative error {:.3g}, {} bytes", choice.cluster_count,
-              choice.component_count, error, bytes);
-    if (bound.max_bytes) {
-      if (bytes > *bound.max_bytes) {
-        // Once more, smaller by as much as this is too large.
-        *aim.max_bytes = static_cast<std::size_t>(0.98 * static_cast<double>(*aim.max_bytes) *
-                                                  static_cast<double>(*bound.max_bytes) /
-                                                  static_cast<double>(bytes));
-        continue;
-      }
-      best = std::move(encoded);
-      break;
-    }
-    least = std::min(least, error);
-    // A little more, as the next choice is not quite like this one.
-    if (choice.error > 0.0) gain = 1.02 * error / choice.error;
-    if (bound.max_error && error > *bound.max_error) continue;
-    if (best && bytes_of(best->encoding, bound.cost) <= bytes) continue;
-    best = std::move(encoded);
-  }
-  if (!best && bound.max_bytes) {
-    throw Error(ErrorKind::failed, "no encoding found that is as small",
-                {.expected = fmt::format("at most {} bytes", *bound.max_bytes),
-                 .advice = "Take --method iterative."});
-  }
-  if (!best) {
-    throw Error(ErrorKind::failed, "no encoding found within the error",
-                {.found = fmt::format("a relative error of {:.4g}", least),
-                 .expected = fmt::format("at most {:.4g}", *bound.max_error)});
-  }
-  best->stages = std::move(stages);
-  return std::move(*best);
+Found encode_within(const Bound& bound, Method method, std::span<const float> signal, int dimension,
+                    const Options& options) {
+  Options least = options;
+  least.cluster_count = 1;
+  least.component_count = 0;
+  check_options(least);
+  check_signal(signal, dimension, least);
+  return Search(bound, method, signal, dimension, options).run();
 }
 
 }  // namespace prt::cpca

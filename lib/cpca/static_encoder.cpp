@@ -39,7 +39,10 @@ Encoded encode_static(std::span<const float> signal, int dimension, const Option
   encoded.encoding.component_count = options.component_count;
   StageClock clock(encoded.stages);
   std::vector<float> means =
-      seed_means(signal, n, static_cast<std::size_t>(options.cluster_count), options.seed);
+      options.start.labels.empty()
+          ? seed_means(signal, n, static_cast<std::size_t>(options.cluster_count), options.seed)
+          : fit_means(signal, n, options.start.labels,
+                      static_cast<std::size_t>(options.cluster_count), options.point_weights);
   clock.finish("seeding");
   Clustering clustering =
       quantize(signal, n, std::move(means), options.iterations, options.point_weights);

@@ -8,16 +8,15 @@ Storage prepare_storage(std::span<const float> signal, std::span<const std::uint
   Storage storage;
   if (!options.is_incoherent) {
     const StageTimer timer(report, "coherence");
-    const Coherence coherence =
-        make_coherent(signal, indices, row_count, options.coherence, encoding);
-    report.json().update(to_json(coherence, options.coherence));
-    storage.first_clusters = coherence.first_clusters;
-  } else {
-    report.json().update(overdraw_to_json(indices, encoding));
+    CoherenceOptions coherence = options.coherence;
+    coherence.limits = options.limits;
+    coherence.limits.total /= 1.0 + kMaxAddedError;
+    coherence.limits.point /= 1.0 + kMaxAddedError;
+    storage.coherence = make_coherent(signal, indices, row_count, coherence, encoding);
+    storage.first_clusters = storage.coherence->first_clusters;
   }
   const StageTimer timer(report, "weights");
-  storage.weight_format = choose_weights(signal, options.weights, encoding);
-  report.json()["weights"] = name_of(storage.weight_format);
+  storage.weight_format = choose_weights(signal, options.weights, encoding, options.limits);
   return storage;
 }
 

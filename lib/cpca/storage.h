@@ -17,15 +17,17 @@ struct StorageOptions {
   bool is_incoherent = false;  ///< leave clusters as they are, without superclusters
   CoherenceOptions coherence;
   std::optional<WeightFormat> weights;  ///< unset: choose_weights decides
+  ErrorLimits limits = {};              ///< of both
 };
 
 struct Storage {
   std::vector<std::uint32_t> first_clusters;  ///< of superclusters; empty: every cluster is one
   WeightFormat weight_format = WeightFormat::float32;
+  std::optional<Coherence> coherence;
 };
 
-/// make_coherent, then choose_weights; arguments as theirs. Adds to the report: stages "coherence"
-/// and "weights", to_json(Coherence), "weights".
+/// make_coherent, then choose_weights; arguments as theirs. Adds stages "coherence" and "weights"
+/// to the report. What choose_weights adds to an error is left out of the limits of make_coherent.
 Storage prepare_storage(std::span<const float> signal, std::span<const std::uint32_t> indices,
                         int row_count, const StorageOptions& options, Encoding& encoding,
                         Report& report);

@@ -13,8 +13,6 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr double kMaxAddedError = 0.01;
-
 /// One component of one cluster: its weights become shares of their range.
 void normalize_component(std::span<const std::uint32_t> points, std::size_t component, float most,
                          std::span<float> basis, std::span<double> mean, Encoding& encoding) {
@@ -37,9 +35,9 @@ void normalize_component(std::span<const std::uint32_t> points, std::size_t comp
   }
 }
 
-double squared_error(std::span<const float> signal, const Encoding& encoding) {
-  const std::vector<double> errors = point_errors(encoding, signal);
-  return std::accumulate(errors.begin(), errors.end(), 0.0);
+bool is_within(const ErrorLimits& limits, std::span<const double> errors) {
+  return std::accumulate(errors.begin(), errors.end(), 0.0) <= limits.total &&
+         *std::max_element(errors.begin(), errors.end()) <= limits.point;
 }
 
 }  // namespace
@@ -78,16 +76,19 @@ void normalize_weights(WeightFormat format, Encoding& encoding) {
 }
 
 WeightFormat choose_weights(std::span<const float> signal, std::optional<WeightFormat> format,
-                            Encoding& encoding) {
+                            Encoding& encoding, const ErrorLimits& limits) {
   if (format) {
     normalize_weights(*format, encoding);
     return *format;
   }
-  const double most = (1.0 + kMaxAddedError) * squared_error(signal, encoding);
+  const std::vector<double> errors = weighted_errors(encoding, signal, limits.point_weights);
+  ErrorLimits stricter = limits;
+  stricter.total = std::min(
+      limits.total, (1.0 + kMaxAddedError) * std::accumulate(errors.begin(), errors.end(), 0.0));
   for (const WeightFormat smaller : {WeightFormat::unorm8, WeightFormat::unorm16}) {
     Encoding normalized = encoding;
     normalize_weights(smaller, normalized);
-    if (squared_error(signal, normalized) > most) continue;
+    if (!is_within(stricter, weighted_errors(normalized, signal, limits.point_weights))) continue;
     encoding = std::move(normalized);
     return smaller;
   }

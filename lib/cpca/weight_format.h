@@ -8,8 +8,12 @@
 #include <span>
 
 #include "cpca/encoding.h"
+#include "cpca/error_limits.h"
 
 namespace prt::cpca {
+
+/// Share of the squared error that integers may add where choose_weights decides.
+constexpr double kMaxAddedError = 0.01;
 
 enum class WeightFormat { float32, unorm16, unorm8 };
 
@@ -26,8 +30,9 @@ float greatest(WeightFormat format);
 void normalize_weights(WeightFormat format, Encoding& encoding);
 
 /// Stores weights in the given format or, without one, in the smallest that makes the squared error
-/// at most 1% greater. Returns the format. `signal` is what the encoding encodes.
+/// at most 1% greater and keeps to the limits. Returns the format. `signal` is what the encoding
+/// encodes; errors count by the weights of the limits.
 WeightFormat choose_weights(std::span<const float> signal, std::optional<WeightFormat> format,
-                            Encoding& encoding);
+                            Encoding& encoding, const ErrorLimits& limits = {});
 
 }  // namespace prt::cpca

@@ -11,6 +11,10 @@
 
 namespace prt::gltf {
 
+/// What the extension has room for.
+constexpr int kMaxBandCount = 16, kMaxRowCount = 256, kMaxClusterCount = 65536,
+              kMaxComponentCount = 256;
+
 /// Compressed transfer of all vertices of a file's scene, numbered through as in mesh::Scene. A
 /// vector of the encoding is ordered [channel][exit row][source coefficient].
 struct PrecomputedTransfer {

@@ -15,8 +15,6 @@ namespace prt::gltf {
 /// Versions of the conventions: the second has component counts and normalised weights.
 constexpr int kFirstConventions = 1, kLastConventions = 2;
 constexpr const char* kClusterAttribute = "_PRT_CLUSTER";
-constexpr int kMaxBandCount = 16, kMaxRowCount = 256, kMaxClusterCount = 65536,
-              kMaxComponentCount = 256;
 
 inline std::string weights_attribute(std::size_t group) {
   return "_PRT_WEIGHTS_" + std::to_string(group);

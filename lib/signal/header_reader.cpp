@@ -162,7 +162,9 @@ void HeaderReader::check_size(const TransferSignal& signal, std::size_t file_byt
   if (value_bytes > max_bytes) {
     throw_bad_input("transfer too large", {.file = file_,
                                            .found = fmt::format("{} bytes", value_bytes),
-                                           .expected = fmt::format("at most {}", max_bytes)});
+                                           .expected = fmt::format("at most {}", max_bytes),
+                                           .advice = "Take fewer vertices, coefficients or "
+                                                     "channels, or a machine of more memory."});
   }
   // Every line is stored whole, with the padding behind its block.
   const Imath::Box2i& window = header_.dataWindow();

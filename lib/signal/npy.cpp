@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <optional>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -124,21 +125,34 @@ void check_sizes(const Header& header, std::size_t file_size, std::size_t max_by
            fmt::format("{} for {} × {}", data_size, header.row_count, header.column_count));
   }
   if (count * sizeof(float) > max_bytes) {
-    refuse("too large",
-           fmt::format("{} × {} values, {} bytes of memory", header.row_count, header.column_count,
-                       count * sizeof(float)),
-           fmt::format("at most {} bytes", max_bytes));
+    throw_bad_input("too large",
+                    {.found = fmt::format("{} × {} values, {} bytes of memory", header.row_count,
+                                          header.column_count, count * sizeof(float)),
+                     .expected = fmt::format("at most {} bytes", max_bytes),
+                     .advice = "Take fewer rows or columns, or a machine of more memory."});
   }
 }
 
-void read_doubles(std::ifstream& file, std::vector<float>& values) {
+[[noreturn]] void refuse_value(const Header& header, std::size_t index, double value) {
+  throw_bad_input(std::isfinite(value) ? "beyond the range of float" : "not a finite number",
+                  {.element = fmt::format("row {}, column {}", index / header.column_count,
+                                          index % header.column_count),
+                   .found = fmt::format("{}", value),
+                   .expected = fmt::format("up to {:.2g}", std::numeric_limits<float>::max())});
+}
+
+void read_doubles(std::ifstream& file, const Header& header, std::vector<float>& values) {
   std::array<double, 4096> some;
   for (std::size_t done = 0; done < values.size(); done += some.size()) {
     const std::size_t count = std::min(some.size(), values.size() - done);
     file.read(reinterpret_cast<char*>(some.data()),
               static_cast<std::streamsize>(count * sizeof(double)));
-    std::transform(some.begin(), some.begin() + count, &values[done],
-                   [](double value) { return static_cast<float>(value); });
+    for (std::size_t i = 0; file && i < count; ++i) {
+      if (!(std::abs(some[i]) <= double{std::numeric_limits<float>::max()})) {
+        refuse_value(header, done + i, some[i]);
+      }
+      values[done + i] = static_cast<float>(some[i]);
+    }
   }
 }
 
@@ -155,18 +169,21 @@ Matrix read_npy(const std::filesystem::path& path, std::size_t max_bytes) {
                   .row_count = header.row_count,
                   .column_count = header.column_count};
     if (header.value_size == sizeof(double)) {
-      read_doubles(file, matrix.values);
+      read_doubles(file, header, matrix.values);
     } else {
       file.read(reinterpret_cast<char*>(matrix.values.data()),
                 static_cast<std::streamsize>(matrix.values.size() * sizeof(float)));
     }
     if (!file) throw_failed("reading failed", {.file = path.string()});
+    const auto bad = std::find_if(matrix.values.begin(), matrix.values.end(),
+                                  [](float value) { return !std::isfinite(value); });
+    if (bad != matrix.values.end()) {
+      refuse_value(header, static_cast<std::size_t>(bad - matrix.values.begin()), double{*bad});
+    }
     return matrix;
   } catch (const Error& error) {
-    ErrorDetails details = error.details();
-    if (!details.file.empty()) throw;
-    const std::string message = error.what();
-    throw Error(error.kind(), fmt::format("{}: {}", path.string(), message));
+    if (!error.details().file.empty()) throw;
+    throw Error(error.kind(), fmt::format("{}: {}", path.string(), error.what()));
   }
 }
 

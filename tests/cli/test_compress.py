@@ -1,11 +1,14 @@
 """prt-compress: methods, signals of any origin, weights, the search, and what cannot be meant."""
 
+import ast
 import math
+import os
 import random
 import struct
 import unittest
+import zipfile
 
-from toolbox import BAD_INPUT, FAILED, SOURCE, WRONG_USAGE, ToolTest, run
+from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, SOURCE, WRONG_USAGE, ToolTest, run
 
 
 def npy_header(row_count, dimension):
@@ -66,7 +69,14 @@ class Signal(ToolTest):
         self.assertLess(report["bytes"], report["signal_bytes"])
 
     def test_search_keeps_to_its_bound(self):
-        self.assertLessEqual(self.compress("--max-error", 0.05)["relative_rmse"], 0.05)
+        report = self.compress("--max-error", 0.05)
+        self.assertLessEqual(report["relative_rmse"], 0.05)
+        search = report["search"]
+        self.assertLessEqual(search["flops_cost"], 3)
+        self.assertGreater(search["cost"], 1)
+        self.assertEqual(search["sampled_points"], 1500)
+        self.assertIn((report["cluster_count"], report["component_count"]),
+                      [(t["cluster_count"], t["component_count"]) for t in search["trials"]])
         report = self.compress("--max-error", 0.1, "--norm", "max")
         mean_energy = report["signal_energy"] / report["point_count"]
         self.assertLessEqual(math.sqrt(report["max_point_error"] / mean_energy), 0.1)
@@ -89,11 +99,80 @@ class Signal(ToolTest):
                            "--components", 12, "--iterations", 1)
         self.assertIn("larger than the signal", result.stderr)
 
+    def decoded(self, path):
+        """Rows of the points that a .npz file holds, read without NumPy."""
+        arrays = {}
+        with zipfile.ZipFile(path) as archive:
+            self.assertIsNone(archive.testzip())
+            for name in archive.namelist():
+                data = archive.read(name)
+                length = struct.unpack_from("<H", data, 8)[0]
+                header = ast.literal_eval(data[10:10 + length].decode())
+                code = {"<u2": "H", "<u4": "I", "<f4": "f"}[header["descr"]]
+                count = math.prod(header["shape"])
+                arrays[name] = header["shape"], struct.unpack_from(f"<{count}{code}", data,
+                                                                   10 + length)
+        (points,), clusters = arrays["cluster_of_point.npy"]
+        (_, dimension), means = arrays["means.npy"]
+        (_, components, _), bases = arrays["bases.npy"]
+        self.assertEqual(arrays["weights.npy"][0], (points, components))
+        weights, counts = arrays["weights.npy"][1], arrays["component_counts.npy"][1]
+        self.assertLessEqual(max(counts), components)
+        rows = []
+        for p, k in enumerate(clusters):
+            row = list(means[k * dimension:(k + 1) * dimension])
+            for i in range(counts[k]):
+                first = (k * components + i) * dimension
+                for j in range(dimension):
+                    row[j] += weights[p * components + i] * bases[first + j]
+            rows.append(row)
+        return rows
+
+    def test_arrays_hold_what_the_report_says(self):
+        for size in (1.0, 1e-30, 1e30):
+            original = [[size * value for value in row] for row in curved_rows()]
+            self.signal = self.write("x.npy", npy(original))
+            output = self.folder / "x.npz"
+            for method in ("iterative", "adaptive"):
+                report = self.compress("-o", output, "--method", method, "--clusters", 20,
+                                       "--components", 2, "--iterations", 5)
+                errors = [sum(((a - b) / size) ** 2 for a, b in zip(row, found))
+                          for row, found in zip(original, self.decoded(output))]
+                energy = sum((value / size) ** 2 for row in original for value in row)
+                self.assertAlmostEqual(math.sqrt(sum(errors) / energy), report["relative_rmse"],
+                                       delta=1e-5 * report["relative_rmse"])
+                self.assertAlmostEqual(math.sqrt(max(errors) * len(errors) / energy),
+                                       report["relative_max"], delta=1e-5)
+                self.assertLess(report["relative_rmse"], 0.2)
+        self.assertEqual(report["outputs"][0]["path"], str(output))
+        self.refused(WRONG_USAGE, 'found ".glb", expected .npz', "prt-compress", "--signal",
+                     self.signal, "-o", self.folder / "x.glb")
+        self.refused(FAILED, "exists", "prt-compress", "--signal", self.signal, "-o", output,
+                     "--no-clobber")
+
+    def test_weighted_figures_are_of_the_weights(self):
+        weights = [100.0] * 6 + [0.01] * 6
+        output = self.folder / "x.npz"
+        report = self.compress("-o", output, "--max-error", 0.05, "--coefficient-weights",
+                               self.write("w.npy", npy([weights])))
+        rows = list(zip(curved_rows(), self.decoded(output)))
+        error = sum(w * (a - b) ** 2 for row, found in rows
+                    for w, a, b in zip(weights, row, found))
+        energy = sum(w * a * a for row, _ in rows for w, a in zip(weights, row))
+        self.assertAlmostEqual(error, report["weighted_squared_error"], delta=1e-4 * error)
+        self.assertAlmostEqual(energy, report["weighted_signal_energy"], delta=1e-4 * energy)
+        self.assertAlmostEqual(math.sqrt(error / energy), report["weighted_relative_rmse"],
+                               delta=1e-5)
+        self.assertLessEqual(report["weighted_relative_rmse"], 0.05)
+        self.assertGreater(report["relative_rmse"], 0.05)
+        self.assertAlmostEqual(report["iterations"][-1]["errors"][-1],
+                               report["weighted_squared_error"], delta=0.1 * error)
+
     def test_bad_rows_are_named(self):
         rows = curved_rows(300)
         rows[217][3] = float("nan")
         path = self.write("nan.npy", npy(rows))
-        self.refused(BAD_INPUT, "point 217, coefficient 3: the signal is not finite",
+        self.refused(BAD_INPUT, "nan.npy: row 217, column 3: not a finite number: found nan",
                      "prt-compress", "--signal", path, "--clusters", 4)
         self.refused(BAD_INPUT, "not a .npy file", "prt-compress", "--signal",
                      self.write("y.npy", b"hello, world"))
@@ -104,9 +183,12 @@ class Signal(ToolTest):
         path = self.write("big.npy", npy_header(90000000, 600))
         with path.open("r+b") as file:
             file.truncate(path.stat().st_size + 90000000 * 2400)
-        result = run("prt-compress", "--signal", path)  # sparse: nobody may read it
-        self.assertEqual(result.returncode, BAD_INPUT)
-        self.assertRegex(result.stderr, "too large: found 90000000 × 600 values, 216000000000 bytes")
+        for method in ("vq", "pca", "static", "iterative", "adaptive"):
+            # Sparse: nobody may read it.
+            result = run("prt-compress", "--signal", path, "--method", method)
+            self.assertEqual(result.returncode, BAD_INPUT)
+            self.assertRegex(result.stderr,
+                             "too large: found 90000000 × 600 values, 216000000000 bytes")
 
 
 class Contradictions(ToolTest):
@@ -127,13 +209,46 @@ class Contradictions(ToolTest):
                 ("excludes", "--error-budget", 0.1),
                 ("excludes", "--registers", 64),
                 ("excludes", "--weights", "float"),
-                ("without a model", "-o", self.folder / "a.glb")):
+                ("without a model", self.folder / "a.glb")):
             with self.subTest(options):
                 self.refused(WRONG_USAGE, pattern, "prt-compress", "--signal", signal, *options)
         self.refused(WRONG_USAGE, "are needed", "prt-compress", "a.glb", "a.transfer.exr")
 
 
+def with_vertex_count(transfer, count):
+    """Bytes of a transfer file whose header claims that many vertices, and no pixels."""
+    header, at = bytearray(transfer[:8]), 8
+    while transfer[at]:
+        name = transfer[at:transfer.index(b"\0", at)]
+        start = transfer.index(b"\0", at + len(name) + 1) + 1
+        size = struct.unpack_from("<i", transfer, start)[0]
+        value = transfer[start + 4:start + 4 + size]
+        if name == b"prtkit_block_vertex_counts":
+            value = struct.pack("<i", len(str(count))) + str(count).encode()
+        elif name == b"dataWindow":
+            value = struct.pack("<4i", 0, 0, 255, (count + 255) // 256 - 1)
+        header += transfer[at:start] + struct.pack("<i", len(value)) + value
+        at = start + 4 + size
+    return bytes(header) + b"\0"
+
+
 class Model(ToolTest):
+    def test_transfer_larger_than_memory_is_refused(self):
+        glb, transfer = self.folder / "a.glb", self.folder / "a.transfer.exr"
+        self.done("prt-import", self.write("a.obj", QUAD_OBJ), "-o", glb)
+        self.done("prt-transfer", glb, "-o", transfer, "--rays", 16, "--bands", 10)
+        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+        count = memory // 400
+        transfer.write_bytes(with_vertex_count(transfer.read_bytes(), count))
+        os.truncate(transfer, memory)  # sparse: nobody may read it
+        for method in ("vq", "pca", "static", "iterative", "adaptive"):
+            result = run("prt-compress", glb, transfer, "-o", self.folder / "b.glb", "--method",
+                         method)
+            self.assertEqual(result.returncode, BAD_INPUT)
+            self.assertRegex(result.stderr, "transfer too large: found [0-9]+ bytes, expected at "
+                                            "most [0-9]+. Take fewer")
+        self.assertFalse((self.folder / "b.glb").exists())
+
     def test_all_methods_and_weights_reach_the_file(self):
         glb, transfer = self.folder / "a.glb", self.folder / "a.transfer.exr"
         self.done("prt-import", SOURCE / "data/colored_box.obj", "-o", glb, "--max-edge", 0.1)

@@ -12,44 +12,81 @@ namespace {
 
 constexpr int kDimension = 40;
 
-struct Counted {
-  int encodings = 0;
-  Encoder encoder = [this](std::span<const float> signal, int dimension, const Options& options) {
-    ++encodings;
-    return encode_iterative(signal, dimension, options);
-  };
-};
-
-TEST(EncodeWithin, KeepsToTheErrorAtLittleCost) {
+TEST(EncodeWithin, KeepsToTheErrorForAboutThreeEncodings) {
   const auto signal = make_signal(4000, kDimension, 8);
   for (const Norm norm : {Norm::rmse, Norm::maximum}) {
     std::size_t last = ~std::size_t{0};
     for (double max_error : {0.01, 0.03, 0.1}) {
-      Counted counted;
-      const Encoded encoded = encode_within({.max_error = max_error, .norm = norm, .max_bytes = {}},
-                                            counted.encoder, signal, kDimension, {});
-      EXPECT_LE(relative_error(encoded.encoding, signal, norm), max_error);
-      EXPECT_LE(counted.encodings, 3);
-      EXPECT_LT(storage_bytes(encoded.encoding), last);  // less for a larger error
-      last = storage_bytes(encoded.encoding);
+      const Found found = encode_within({.max_error = max_error, .norm = norm, .max_bytes = {}},
+                                        Method::iterative, signal, kDimension, {});
+      EXPECT_LE(relative_error(found.encoded.encoding, signal, norm), max_error);
+      EXPECT_LE(found.flops_cost, norm == Norm::rmse ? 3.0 : 4.0) << max_error;
+      EXPECT_GE(found.flops_cost, 1.0);
+      EXPECT_GE(found.cost, 1.0);
+      EXPECT_LT(storage_bytes(found.encoded.encoding), last);  // less for a larger error
+      last = storage_bytes(found.encoded.encoding);
     }
     EXPECT_LT(last, signal.size());  // a quarter of its bytes
   }
+}
+
+TEST(EncodeWithin, IsAboutAsSmallAsTheBestOfAllCounts) {
+  const auto signal = make_signal(3000, 20, 6);
+  const Bound bound{.max_error = 0.03, .max_bytes = {}};
+  const Found found = encode_within(bound, Method::iterative, signal, 20, {});
+  std::size_t least = ~std::size_t{0};
+  const double energy = weighted_energy(signal, 3000, {});
+  for (int clusters = 4; clusters < 300; clusters += 1 + clusters / 8) {
+    const Encoded encoded =
+        encode_iterative(signal, 20, {.cluster_count = clusters, .component_count = 7});
+    for (const Level& level : encoded.levels) {
+      if (std::sqrt(level.errors.back() / energy) > 0.03) continue;
+      const Choice choice{clusters, level.component_count};
+      least = std::min(least, bound.cost.bytes({3000, 20}, choice));
+    }
+  }
+  EXPECT_LT(static_cast<double>(storage_bytes(found.encoded.encoding)),
+            1.05 * static_cast<double>(least));
 }
 
 TEST(EncodeWithin, KeepsToTheBytes) {
   const auto signal = make_signal(4000, kDimension, 8);
   double last = 0.0;
   for (std::size_t max_bytes : {200000u, 100000u, 30000u}) {
-    Counted counted;
-    const Encoded encoded = encode_within({.max_error = {}, .max_bytes = max_bytes},
-                                          counted.encoder, signal, kDimension, {});
-    EXPECT_LE(storage_bytes(encoded.encoding), max_bytes);
-    EXPECT_GT(storage_bytes(encoded.encoding), max_bytes * 9 / 10);
-    EXPECT_EQ(counted.encodings, 1);
-    const double error = relative_error(encoded.encoding, signal, Norm::rmse);
+    const Found found = encode_within({.max_error = {}, .max_bytes = max_bytes}, Method::iterative,
+                                      signal, kDimension, {});
+    EXPECT_LE(storage_bytes(found.encoded.encoding), max_bytes);
+    EXPECT_GT(storage_bytes(found.encoded.encoding), max_bytes * 9 / 10);
+    EXPECT_LE(found.flops_cost, 3.0);
+    const double error = relative_error(found.encoded.encoding, signal, Norm::rmse);
     EXPECT_GT(error, last);  // more for fewer bytes
     last = error;
+  }
+}
+
+TEST(EncodeWithin, KeepsToWeightedErrors) {
+  const auto signal = make_signal(3000, kDimension, 8);
+  std::vector<float> weights(3000, 0.1f);
+  for (std::size_t p = 0; p < weights.size(); p += 10) weights[p] = 9.1f;
+  for (const Norm norm : {Norm::rmse, Norm::maximum}) {
+    const Found found =
+        encode_within({.max_error = 0.05, .norm = norm, .max_bytes = {}}, Method::iterative, signal,
+                      kDimension, {.iterations = 8, .point_weights = weights});
+    const Encoding& encoding = found.encoded.encoding;
+    EXPECT_LE(relative_error(encoding, signal, norm, weights), 0.05);
+    EXPECT_GT(relative_error(encoding, signal, norm, weights), 0.03);
+    EXPECT_GT(relative_error(encoding, signal, Norm::rmse),
+              1.05 * relative_error(encoding, signal, Norm::rmse, weights));
+  }
+}
+
+TEST(EncodeWithin, TakesAllMethods) {
+  const auto signal = make_signal(3000, kDimension, 8);
+  for (const Method method : {Method::fixed, Method::adaptive}) {
+    const Found found = encode_within({.max_error = 0.03, .max_bytes = {}}, method, signal,
+                                      kDimension, {.iterations = 8});
+    EXPECT_LE(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.03);
+    EXPECT_GT(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.025);
   }
 }
 
@@ -58,7 +95,8 @@ TEST(EncodeWithin, AdaptiveKeepsToTheBytesToo) {
   const auto signal = make_uneven_signal(2000, kDimension, 4);
   for (std::size_t max_bytes : {100000u, 50000u, 30000u}) {
     const Encoded encoded = encode_within({.max_error = {}, .max_bytes = max_bytes},
-                                          encode_adaptive, signal, kDimension, {.iterations = 5});
+                                          Method::adaptive, signal, kDimension, {.iterations = 5})
+                                .encoded;
     EXPECT_LE(storage_bytes(encoded.encoding), max_bytes);
     EXPECT_GT(storage_bytes(encoded.encoding), max_bytes / 2);
   }
@@ -66,19 +104,21 @@ TEST(EncodeWithin, AdaptiveKeepsToTheBytesToo) {
 
 TEST(EncodeWithin, SaysWhatCannotBe) {
   const auto noise = random_values(300 * 100, 1);
-  EXPECT_THROW(encode_within({.max_error = 1e-9, .max_bytes = {}}, encode_iterative, noise, 100,
+  EXPECT_THROW(encode_within({.max_error = 1e-9, .max_bytes = {}}, Method::iterative, noise, 100,
                              {.iterations = 2}),
                Error);
-  EXPECT_THROW(encode_within({.max_error = {}, .max_bytes = 10}, encode_iterative, noise, 100,
+  EXPECT_THROW(encode_within({.max_error = {}, .max_bytes = 10}, Method::iterative, noise, 100,
                              {.iterations = 2}),
                Error);
 }
 
 TEST(EncodeWithin, TakesDegenerateSignals) {
   for (const DegenerateCase& test : degenerate_cases()) {
-    const Encoded encoded =
-        encode_within({.max_error = 1e-4, .max_bytes = {}}, encode_iterative, test.signal, 9, {});
-    EXPECT_LE(relative_error(encoded.encoding, test.signal, Norm::rmse), 1e-4) << test.name;
+    for (const Norm norm : {Norm::rmse, Norm::maximum}) {
+      const Found found = encode_within({.max_error = 1e-4, .norm = norm, .max_bytes = {}},
+                                        Method::iterative, test.signal, 9, {});
+      EXPECT_LE(relative_error(found.encoded.encoding, test.signal, norm), 1e-4) << test.name;
+    }
   }
 }
 

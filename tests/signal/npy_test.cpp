@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "signal/npz.h"
 
 namespace prt::signal {
 namespace {
@@ -68,6 +69,35 @@ TEST_F(Npy, ReadsFloatsAndDoublesOfAllVersions) {
   EXPECT_EQ(read_npy(path_).values, values);
 }
 
+TEST_F(Npy, NamesTheRowOfWhatIsNoFiniteFloat) {
+  std::vector<float> values(6);
+  values[4] = std::numeric_limits<float>::quiet_NaN();
+  write(dictionary("<f4", "(3, 2)"), values);
+  EXPECT_EQ(message(), path_.string() +
+                           ": row 2, column 0: not a finite number: found nan, expected up to "
+                           "3.4e+38");
+  std::vector<double> doubles(6);
+  doubles[5] = -1e39;
+  write(dictionary("<f8", "(3, 2)"), doubles);
+  EXPECT_NE(message().find("row 2, column 1: beyond the range of float: found -1e+39"),
+            std::string::npos);
+  doubles[5] = std::numeric_limits<double>::infinity();
+  write(dictionary("<f8", "(3, 2)"), doubles);
+  EXPECT_NE(message().find("row 2, column 1: not a finite number: found inf"), std::string::npos);
+}
+
+TEST_F(Npy, ReadsItsOwnHeader) {
+  const std::vector<float> values{1, 2, 3};
+  for (const std::vector<std::size_t>& shape : {std::vector<std::size_t>{3, 1}, {1, 3}, {3}}) {
+    const std::string header = npy_header("<f4", shape);
+    EXPECT_EQ(header.size() % 64, 0u);
+    write_bytes(header + std::string(reinterpret_cast<const char*>(values.data()), 12));
+    const Matrix matrix = read_npy(path_);
+    EXPECT_EQ(matrix.values, values);
+    EXPECT_EQ(matrix.column_count, shape.back());
+  }
+}
+
 TEST_F(Npy, RefusesWhatIsNoMatrixOfFloats) {
   const std::vector<float> values(6);
   const std::string file = path_.string();
@@ -96,7 +126,8 @@ TEST_F(Npy, RefusesWhatIsNoMatrixOfFloats) {
   write(dictionary("<f4", "(20, 20)"), std::vector<float>(400));
   EXPECT_EQ(message(), file +
                            ": too large: found 20 × 20 values, 1600 bytes of memory, expected at "
-                           "most 1000 bytes");
+                           "most 1000 bytes. Take fewer rows or columns, or a machine of more "
+                           "memory.");
   write("{'descr': '<f4'}", values);
   EXPECT_NE(message().find("broken header: found no 'fortran_order'"), std::string::npos);
   write_bytes("\x93NUMPY");

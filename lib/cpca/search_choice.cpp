@@ -1,0 +1,102 @@
+#include "cpca/search_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/parallel.h"
+#include "cpca/error_limits.h"
+
+namespace prt::cpca {
+
+namespace {
+
+constexpr std::size_t kBlock = 512;
+
+std::size_t total(const StorageCost& cost, const Size& size, std::size_t weight_count,
+                  std::size_t cluster_count, std::size_t vector_count) {
+  return size.point_count * cost.bytes_per_point + weight_count * cost.bytes_per_weight +
+         cluster_count * cost.bytes_per_cluster +
+         (cluster_count + vector_count) * size.dimension * sizeof(float);
+}
+
+std::size_t padded(std::size_t weight_count, std::size_t group) {
+  return (weight_count + group - 1) / group * group;
+}
+
+double relative(std::span<const double> weighted_errors, Norm norm, double energy) {
+  if (energy <= 0.0) return 0.0;
+  const double square = norm == Norm::rmse
+                            ? std::accumulate(weighted_errors.begin(), weighted_errors.end(), 0.0)
+                            : *std::max_element(weighted_errors.begin(), weighted_errors.end()) *
+                                  static_cast<double>(weighted_errors.size());
+  return std::sqrt(square / energy);
+}
+
+}  // namespace
+
+std::size_t StorageCost::bytes(const Size& size, const Choice& choice) const {
+  const auto clusters = static_cast<std::size_t>(choice.cluster_count);
+  const auto components = static_cast<std::size_t>(choice.component_count);
+  return total(*this, size, size.point_count * padded(components, weight_group), clusters,
+               clusters * components);
+}
+
+std::size_t StorageCost::bytes(const Encoding& encoding) const {
+  std::size_t weights = 0, vectors = 0;
+  const auto count_of = [&](int cluster) {
+    return static_cast<std::size_t>(encoding.component_count_of(cluster));
+  };
+  for (int k = 0; k < encoding.cluster_count; ++k) vectors += count_of(k);
+  for (const std::uint32_t cluster : encoding.cluster_of_point) {
+    weights += padded(count_of(static_cast<int>(cluster)), weight_group);
+  }
+  return total(*this, {encoding.point_count, static_cast<std::size_t>(encoding.dimension)}, weights,
+               static_cast<std::size_t>(encoding.cluster_count), vectors);
+}
+
+double weighted_energy(std::span<const float> signal, std::size_t point_count,
+                       std::span<const float> point_weights) {
+  const std::size_t n = signal.size() / point_count;
+  std::vector<double> sums(block_count(point_count, kBlock));
+  parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      double lanes[8] = {};
+      for (std::size_t i = 0; i < n; ++i) {
+        const double value = signal[p * n + i];
+        lanes[i % 8] += value * value;
+      }
+      double square = 0.0;
+      for (const double lane : lanes) square += lane;
+      sums[begin / kBlock] += square * (point_weights.empty() ? 1.0 : double{point_weights[p]});
+    }
+  });
+  double sum = 0.0;
+  for (const double part : sums) sum += part;
+  return sum;
+}
+
+double relative_error(const Encoding& encoding, std::span<const float> signal, Norm norm,
+                      std::span<const float> point_weights) {
+  const double energy = weighted_energy(signal, encoding.point_count, point_weights);
+  return relative(weighted_errors(encoding, signal, point_weights), norm, energy);
+}
+
+std::vector<double> relative_errors(const Encoding& encoding, std::span<const float> signal,
+                                    Norm norm, std::span<const float> point_weights) {
+  const double energy = weighted_energy(signal, encoding.point_count, point_weights);
+  const auto count = static_cast<std::size_t>(encoding.component_count);
+  std::vector<double> errors = weighted_errors(encoding, signal, point_weights);
+  std::vector<double> relative_errors(count + 1);
+  for (std::size_t i = count + 1; i-- > 0;) {
+    relative_errors[i] = relative(errors, norm, energy);
+    for (std::size_t p = 0; i > 0 && p < errors.size(); ++p) {
+      const double weight = encoding.weights[p * count + i - 1];
+      errors[p] += weight * weight * (point_weights.empty() ? 1.0 : double{point_weights[p]});
+    }
+  }
+  return relative_errors;
+}
+
+}  // namespace prt::cpca

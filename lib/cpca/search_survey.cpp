@@ -1,0 +1,205 @@
+#include "cpca/search_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "cpca/iterative_encoder.h"
+
+namespace prt::cpca {
+
+namespace {
+
+constexpr int kIterations = 4, kStep = 4, kMostColumns = 4;
+/// One point of so many is in the sample, but so many at least.
+constexpr std::size_t kSampleShare = 4, kLeastSample = 4096;
+/// Points of a cluster of the sample, at least; and per vector and mean.
+constexpr std::size_t kPointsPerCluster = 6;
+constexpr double kPointsPerVector = 1.7;
+constexpr std::size_t kMostClusters = 65536, kSignalPointsPerCluster = 2, kBlock = 512;
+
+struct Sample {
+  std::vector<float> rows, weights;  ///< empty: all points
+  std::span<const float> signal, point_weights;
+  std::size_t count = 0, all_count = 0;
+  double energy = 0.0;
+
+  double points_per_cluster(int cluster_count) const {
+    return static_cast<double>(count) / cluster_count;
+  }
+};
+
+/// One point out of each of equally long stretches of the signal.
+void draw(Sample& sample, std::span<const float> signal, std::size_t n, const Options& options) {
+  Pcg32 random(options.seed);
+  std::vector<std::size_t> points(sample.count);
+  for (std::size_t s = 0; s < sample.count; ++s) {
+    const std::size_t begin = s * sample.all_count / sample.count;
+    const std::size_t length = (s + 1) * sample.all_count / sample.count - begin;
+    points[s] = begin + random.below(static_cast<std::uint32_t>(length));
+  }
+  sample.rows.resize(sample.count * n);
+  parallel_for(sample.count, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      std::copy_n(&signal[points[s] * n], n, &sample.rows[s * n]);
+    }
+  });
+  sample.signal = sample.rows;
+  if (options.point_weights.empty()) return;
+  for (const std::size_t point : points) sample.weights.push_back(options.point_weights[point]);
+  sample.point_weights = sample.weights;
+}
+
+Sample make_sample(std::span<const float> signal, std::size_t n, const Options& options) {
+  Sample sample;
+  sample.all_count = signal.size() / n;
+  sample.count =
+      std::min(sample.all_count, std::max(kLeastSample, sample.all_count / kSampleShare));
+  sample.signal = signal;
+  sample.point_weights = options.point_weights;
+  if (sample.count < sample.all_count) draw(sample, signal, n, options);
+  sample.energy = weighted_energy(sample.signal, sample.count, sample.point_weights);
+  return sample;
+}
+
+/// Encodes the sample, and tells the errors of the whole signal.
+class Surveyor {
+ public:
+  Surveyor(const Bound& bound, Method method, const Sample& sample, int dimension,
+           const Options& options)
+      : bound_(bound),
+        method_(method),
+        sample_(sample),
+        dimension_(dimension),
+        size_{sample.all_count, static_cast<std::size_t>(dimension)},
+        options_(options) {
+    options_.point_weights = sample.point_weights;
+    options_.iterations = std::min(options.iterations, kIterations);
+    // More than the signal is never worth it.
+    most_bytes_ = bound.max_bytes.value_or(sample.all_count * size_.dimension * sizeof(float));
+  }
+
+  Column encode(int cluster_count) {
+    options_.cluster_count = cluster_count;
+    options_.component_count = most_components(cluster_count);
+    Column column = method_ == Method::fixed ? encode_fixed() : encode_iteratively();
+    for (std::size_t i = 0; bound_.max_error && i < column.errors.size(); ++i) {
+      if (column.errors[i] > *bound_.max_error) continue;
+      most_bytes_ =
+          std::min(most_bytes_, bound_.cost.bytes(size_, {cluster_count, static_cast<int>(i)}));
+    }
+    return column;
+  }
+
+  double flops() const { return flops_; }
+
+ private:
+  /// As many as fit the bytes and the sample has points for.
+  int most_components(int cluster_count) const {
+    int most = std::min(dimension_, bound_.cost.max_component_count);
+    const double points = sample_.points_per_cluster(cluster_count);
+    if (sample_.count < sample_.all_count) {
+      most = std::min(most, static_cast<int>(points / kPointsPerVector) - 1);
+    }
+    while (most > 0 && bound_.cost.bytes(size_, {cluster_count, most}) > most_bytes_) --most;
+    return std::max(most, 0);
+  }
+
+  /// From errors of the sample to those of the signal.
+  double correction(std::size_t components) const {
+    if (sample_.count == sample_.all_count) return 1.0;
+    const auto taken =
+        static_cast<double>((components + 1) * static_cast<std::size_t>(options_.cluster_count));
+    return std::sqrt((1.0 - taken / static_cast<double>(sample_.all_count)) /
+                     (1.0 - taken / static_cast<double>(sample_.count)));
+  }
+
+  /// Of the encoder's last level.
+  double relative_error(IterativeEncoder& encoder, double squared_error) const {
+    if (sample_.energy <= 0.0) return 0.0;
+    if (bound_.norm == Norm::rmse) return std::sqrt(squared_error / sample_.energy);
+    const std::vector<float>& errors = encoder.clusterer().errors();
+    double largest = 0.0;
+    for (std::size_t p = 0; p < errors.size(); ++p) {
+      const double weight = sample_.point_weights.empty() ? 1.0 : double{sample_.point_weights[p]};
+      largest = std::max(largest, weight * double{errors[p]});
+    }
+    return std::sqrt(largest * static_cast<double>(sample_.count) / sample_.energy);
+  }
+
+  Column encode_fixed() {
+    const Encoding encoding = encode_static(sample_.signal, dimension_, options_).encoding;
+    Column column{encoding.cluster_count,
+                  relative_errors(encoding, sample_.signal, bound_.norm, sample_.point_weights)};
+    for (std::size_t i = 0; i < column.errors.size(); ++i) column.errors[i] *= correction(i);
+    return column;
+  }
+
+  Column encode_iteratively() {
+    IterativeEncoder encoder(sample_.signal, static_cast<std::size_t>(dimension_), options_,
+                             static_cast<std::size_t>(options_.component_count) + 1);
+    Column column{options_.cluster_count, {}};
+    for (int i = 0; i <= options_.component_count; ++i) {
+      const double squared_error = encoder.run_level().errors.back();
+      column.errors.push_back(relative_error(encoder, squared_error) *
+                              correction(static_cast<std::size_t>(i)));
+      if (bound_.max_error && column.errors.back() <= *bound_.max_error) break;
+    }
+    flops_ += encoder.clusterer().flops();
+    return column;
+  }
+
+  const Bound& bound_;
+  const Method method_;
+  const Sample& sample_;
+  const int dimension_;
+  const Size size_;
+  Options options_;
+  std::size_t most_bytes_ = 0;
+  double flops_ = 0.0;
+};
+
+}  // namespace
+
+int most_clusters(std::size_t point_count) {
+  return static_cast<int>(
+      std::clamp<std::size_t>(point_count / kSignalPointsPerCluster, 1, kMostClusters));
+}
+
+Survey make_survey(const Bound& bound, Method method, std::span<const float> signal, int dimension,
+                   const Options& options) {
+  const auto n = static_cast<std::size_t>(dimension);
+  const Sample sample = make_sample(signal, n, options);
+  Surveyor surveyor(bound, method, sample, dimension, options);
+  const int most = static_cast<int>(std::max<std::size_t>(1, sample.count / kPointsPerCluster));
+  // Where clusters take about as many bytes as the weights of points.
+  const std::size_t even = sample.all_count * bound.cost.bytes_per_weight / (n * sizeof(float));
+  Survey survey;
+  survey.sampled_count = sample.count;
+  const auto add = [&](int count) { survey.model.add(surveyor.encode(count)); };
+  int low = static_cast<int>(std::clamp<std::size_t>(even / 2, 1, static_cast<std::size_t>(most)));
+  add(low);
+  int high = low;
+  for (int column = 1; column < kMostColumns; ++column) {
+    const int wanted =
+        choose(survey.model, bound, {sample.all_count, n}, most_clusters(sample.all_count))
+            .cluster_count;
+    const bool is_more = wanted > high || (column == 1 && low == 1);
+    if (is_more && high < most && (column == 1 || wanted > high + high / 3)) {
+      high = std::min(most, high * kStep);
+      add(high);
+    } else if (!is_more && low > 1 && (column == 1 || wanted < low - low / 4)) {
+      low = std::max(1, low / kStep);
+      add(low);
+    } else {
+      break;
+    }
+  }
+  survey.flops = surveyor.flops();
+  return survey;
+}
+
+}  // namespace prt::cpca

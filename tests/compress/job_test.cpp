@@ -1,0 +1,157 @@
+// The whole of prt-compress, and what its files hold when they are read again.
+#include "compress/job.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compress/signal.h"
+#include "core/error.h"
+#include "cpca/meshes.h"
+#include "gltf/document.h"
+#include "signal/transfer_signal.h"
+#include "temporary_folder.h"
+
+namespace prt::compress {
+namespace {
+
+constexpr std::uint32_t kSide = 48;
+constexpr std::size_t kDimension = 16;
+
+class CompressedModel : public testing::Test {
+ protected:
+  CompressedModel() {
+    mesh::Scene scene;
+    scene.materials.emplace_back();
+    mesh::Primitive primitive;
+    primitive.material = 0;
+    primitive.mesh.indices = cpca::grid(kSide, kSide);
+    for (std::uint32_t p = 0; p < kSide * kSide; ++p) {
+      const auto x = static_cast<float>(p % kSide), y = static_cast<float>(p / kSide);
+      primitive.mesh.positions.emplace_back(x * x, y, 0.0f);  // areas differ
+      primitive.mesh.normals.emplace_back(0.0f, 0.0f, 1.0f);
+      for (std::size_t i = 0; i < kDimension; ++i) {
+        const auto k = static_cast<float>(i);
+        signal_.values.push_back(std::sin(0.02f * (k + 1) * x + 0.1f * y) +
+                                 std::cos(0.03f * k * y) + (x * x > 30 * y ? 0.4f : 0.0f));
+      }
+    }
+    scene.primitives.push_back(primitive);
+    gltf::Document::from_scene(scene).save_glb(folder_ / "a.glb");
+    scene_ = gltf::Document::load(folder_ / "a.glb").scene();
+    signal_.band_count = 4;
+    signal_.tool_version = "test";
+    signal_.mesh_hash = mesh::mesh_hash(scene_);
+    signal_.blocks = {{scene_.primitives[0].name, kSide * kSide}};
+    signal::write_transfer(folder_ / "a.transfer.exr", signal_);
+    job_.model = folder_ / "a.glb";
+    job_.transfer = folder_ / "a.transfer.exr";
+    job_.output = folder_ / "a.prt.glb";
+    job_.iterations = 8;
+  }
+
+  /// Errors of what the file holds.
+  Errors stored(const Weights& weights) {
+    const auto transfer = gltf::Document::load(job_.output).precomputed_transfer();
+    return measure(transfer->encoding, signal_.values, weights);
+  }
+
+  TemporaryFolder folder_;
+  mesh::Scene scene_;
+  signal::TransferSignal signal_;
+  Job job_;
+};
+
+TEST_F(CompressedModel, KeepsToTheBoundAsWritten) {
+  job_.storage.coherence.error_budget = 0.5;  // much to spend on moves
+  for (const cpca::Norm norm : {cpca::Norm::rmse, cpca::Norm::maximum}) {
+    for (const double max_error : {0.2, 0.02, 0.003}) {
+      job_.bound.max_error = max_error;
+      job_.bound.norm = norm;
+      Report report("test");
+      run(job_, report);
+      const Errors errors = stored({});
+      const bool is_rmse = norm == cpca::Norm::rmse;
+      const double found = is_rmse ? errors.relative_rmse() : errors.relative_max();
+      EXPECT_LE(found, max_error);
+      EXPECT_GT(found, 0.5 * max_error);
+      EXPECT_GT(report.json()["moved_count"].get<int>(), 0);
+      EXPECT_NEAR(report.json()[is_rmse ? "relative_rmse" : "relative_max"].get<double>(), found,
+                  1e-9 + 1e-5 * found);
+      EXPECT_LE(report.json()["search"]["flops_cost"].get<double>(), 4.0);
+    }
+  }
+}
+
+TEST_F(CompressedModel, KeepsToTheBoundByItsWeights) {
+  const std::vector<float> areas = vertex_areas(scene_);
+  job_.weigh_by_area = true;
+  for (const cpca::Norm norm : {cpca::Norm::rmse, cpca::Norm::maximum}) {
+    job_.bound.max_error = 0.02;
+    job_.bound.norm = norm;
+    Report report("test");
+    run(job_, report);
+    const Errors errors = stored({.points = areas});
+    EXPECT_LE(norm == cpca::Norm::rmse ? errors.relative_rmse() : errors.relative_max(), 0.02);
+    EXPECT_NEAR(report.json()["weighted_relative_rmse"].get<double>(), errors.relative_rmse(),
+                1e-5 * errors.relative_rmse());
+    EXPECT_NEAR(report.json()["relative_rmse"].get<double>(), stored({}).relative_rmse(),
+                1e-5 * errors.relative_rmse());
+  }
+}
+
+TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
+  job_.bound.max_error = 0.0005;
+  job_.storage.weights = cpca::WeightFormat::unorm8;
+  Report report("test");
+  EXPECT_THROW(run(job_, report), Error);
+  EXPECT_FALSE(std::filesystem::exists(job_.output));
+  job_.storage.weights.reset();
+  run(job_, report);
+  EXPECT_LE(stored({}).relative_rmse(), 0.0005);
+}
+
+TEST_F(CompressedModel, IsTheSameOfASignalOfAnySize) {
+  job_.cluster_count = 12;
+  job_.component_count = 3;
+  Report report("test");
+  run(job_, report);
+  const double expected = stored({}).relative_rmse();
+  for (const float size : {1e-30f, 1e30f}) {
+    for (float& value : signal_.values) value *= size;
+    signal::write_transfer(folder_ / "a.transfer.exr", signal_);
+    run(job_, report);
+    EXPECT_NEAR(stored({}).relative_rmse(), expected, 0.02 * expected);
+    for (float& value : signal_.values) value /= size;
+  }
+}
+
+TEST(CheckJob, RefusesWhatAModelHasNoRoomForBeforeTheWork) {
+  const auto message = [](auto change) -> std::string {
+    Job job;
+    job.model = "a.glb";
+    job.transfer = "a.transfer.exr";
+    job.output = "b.glb";
+    change(job);
+    try {
+      check(job);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(message([](Job&) {}), "no error");
+  EXPECT_EQ(message([](Job& job) { job.cluster_count = 65537; }),
+            "--clusters beyond what a model has room for: found 65537, expected at most 65536");
+  EXPECT_EQ(message([](Job& job) { job.component_count = 257; }),
+            "--components beyond what a model has room for: found 257, expected at most 256");
+  EXPECT_EQ(message([](Job& job) {
+              job.method = "adaptive";
+              job.max_component_count = 300;
+            }),
+            "--max-components beyond what a model has room for: found 300, expected at most 256");
+}
+
+}  // namespace
+}  // namespace prt::compress
