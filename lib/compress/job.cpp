@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compress/arrays.h"
 #include "compress/scaling.h"
 #include "compress/signal.h"
 #include "core/error.h"
@@ -15,7 +16,6 @@
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "signal/npy.h"
-#include "signal/npz.h"
 #include "signal/transfer_signal.h"
 
 namespace prt::compress {
@@ -116,7 +116,6 @@ nlohmann::ordered_json to_json(const cpca::Found& found) {
   }
   return {{"sampled_points", found.sampled_count},
           {"seconds", found.seconds},
-          {"cost", found.cost},
           {"flops_cost", found.flops_cost},
           {"trials", trials}};
 }
@@ -133,6 +132,7 @@ cpca::Encoded encode(const Job& job, const Input& input, Report& report) {
   cpca::Found found =
       cpca::encode_within(bound_of_encoder(job), method, input.transfer.values, dimension, options);
   log::info("the search took as long as {:.2f} encodings", found.cost);
+  report.json()["search_cost"] = found.cost;
   report.json()["search"] = to_json(found);
   return std::move(found.encoded);
 }
@@ -156,6 +156,12 @@ cpca::Storage prepare_storage(const Job& job, const Input& input, cpca::Encoding
                                input.transfer.row_count, options, encoding, report);
 }
 
+/// The storage of [Sloan03] §4.1, m_p n' + m_c (n' + 1) n: storage_bytes but for the indices.
+std::size_t stored_numbers(const cpca::Encoding& encoding) {
+  const std::size_t index_bytes = encoding.cluster_count <= 65536 ? 2 : 4;
+  return (cpca::storage_bytes(encoding) - encoding.point_count * index_bytes) / sizeof(float);
+}
+
 /// Figures of what is stored, weighted ones too where there are weights. Throws Error (failed) when
 /// these are beyond max_error: the search left room, which given weights may exceed.
 void report_encoding(const Job& job, const Input& input, const cpca::Encoded& encoded,
@@ -174,6 +180,7 @@ void report_encoding(const Job& job, const Input& input, const cpca::Encoded& en
                      .largest = json["max_point_error"],
                      .point_count = encoded.encoding.point_count};
   json["relative_max"] = plain.relative_max();
+  json["stored_numbers"] = stored_numbers(encoded.encoding);
   if (!input.weights().empty()) {
     json["weighted_squared_error"] = errors.squared;
     json["weighted_signal_energy"] = errors.energy;
@@ -215,27 +222,6 @@ void save_model(const Job& job, Input& input, const cpca::Storage& storage, cpca
   }
   input.document->set_precomputed_transfer(transfer);
   input.document->save_glb(job.output, job.no_clobber);
-}
-
-/// docs/tools/prt-compress.md, "Signals of your own".
-void save_arrays(const Job& job, const cpca::Encoding& encoding) {
-  const auto points = encoding.point_count, n = static_cast<std::size_t>(encoding.dimension),
-             clusters = static_cast<std::size_t>(encoding.cluster_count),
-             components = static_cast<std::size_t>(encoding.component_count);
-  const bool is_small = clusters <= 65536;
-  const std::vector<std::uint16_t> small(
-      encoding.cluster_of_point.begin(),
-      is_small ? encoding.cluster_of_point.end() : encoding.cluster_of_point.begin());
-  std::vector<std::uint32_t> counts = encoding.component_counts;
-  if (counts.empty()) counts.assign(clusters, static_cast<std::uint32_t>(components));
-  const std::vector<signal::Array> arrays{
-      is_small ? signal::make_array("cluster_of_point", "<u2", {points}, small)
-               : signal::make_array("cluster_of_point", "<u4", {points}, encoding.cluster_of_point),
-      signal::make_array("means", "<f4", {clusters, n}, encoding.means),
-      signal::make_array("bases", "<f4", {clusters, components, n}, encoding.bases),
-      signal::make_array("weights", "<f4", {points, components}, encoding.weights),
-      signal::make_array("component_counts", "<u4", {clusters}, counts)};
-  signal::write_npz(job.output, arrays, job.no_clobber);
 }
 
 /// Numbers of the report that were measured in other units: squared errors of the scaled signal.
@@ -281,7 +267,7 @@ void run(const Job& job, Report& report) {
     if (input.document) {
       save_model(job, input, storage, std::move(encoded.encoding), report);
     } else {
-      save_arrays(job, encoded.encoding);
+      save_arrays(job.output, encoded.encoding, job.no_clobber);
     }
     report.add_output(job.output);
   }

@@ -175,12 +175,13 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
   const Sample sample = make_sample(signal, n, options);
   Surveyor surveyor(bound, method, sample, dimension, options);
   const int most = static_cast<int>(std::max<std::size_t>(1, sample.count / kPointsPerCluster));
-  // Where clusters take about as many bytes as the weights of points.
-  const std::size_t even = sample.all_count * bound.cost.bytes_per_weight / (n * sizeof(float));
+  // An eighth of the clusters whose means and vectors take as many bytes as the weights of points:
+  // about the fewest that are chosen, as encodings of few clusters take the least time.
+  const std::size_t few = sample.all_count * bound.cost.bytes_per_weight / (8 * n * sizeof(float));
   Survey survey;
   survey.sampled_count = sample.count;
   const auto add = [&](int count) { survey.model.add(surveyor.encode(count)); };
-  int low = static_cast<int>(std::clamp<std::size_t>(even / 2, 1, static_cast<std::size_t>(most)));
+  int low = static_cast<int>(std::clamp<std::size_t>(few, 1, static_cast<std::size_t>(most)));
   add(low);
   int high = low;
   for (int column = 1; column < kMostColumns; ++column) {

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "cpca/figures.h"
-#include "cpca/signals.h"
+#include "cpca/surface.h"
 
 namespace prt::cpca {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr int kDimension = 40;
 
 TEST(EncodeWithin, KeepsToTheErrorForAboutThreeEncodings) {
-  const auto signal = make_signal(4000, kDimension, 8);
+  const auto signal = make_surface(4000, kDimension);
   for (const Norm norm : {Norm::rmse, Norm::maximum}) {
     std::size_t last = ~std::size_t{0};
     for (double max_error : {0.01, 0.03, 0.1}) {
@@ -31,18 +31,16 @@ TEST(EncodeWithin, KeepsToTheErrorForAboutThreeEncodings) {
 }
 
 TEST(EncodeWithin, IsAboutAsSmallAsTheBestOfAllCounts) {
-  const auto signal = make_signal(3000, 20, 6);
-  const Bound bound{.max_error = 0.03, .max_bytes = {}};
-  const Found found = encode_within(bound, Method::iterative, signal, 20, {});
+  const auto signal = make_surface(2000, 20);
+  const Bound bound{.max_error = 0.05, .max_bytes = {}};
+  const Found found = encode_within(bound, Method::iterative, signal, 20, {.iterations = 8});
+  const double energy = weighted_energy(signal, 2000, {});
   std::size_t least = ~std::size_t{0};
-  const double energy = weighted_energy(signal, 3000, {});
-  for (int clusters = 4; clusters < 300; clusters += 1 + clusters / 8) {
-    const Encoded encoded =
-        encode_iterative(signal, 20, {.cluster_count = clusters, .component_count = 7});
-    for (const Level& level : encoded.levels) {
-      if (std::sqrt(level.errors.back() / energy) > 0.03) continue;
-      const Choice choice{clusters, level.component_count};
-      least = std::min(least, bound.cost.bytes({3000, 20}, choice));
+  for (int clusters = 4; clusters < 200; clusters += 1 + clusters / 10) {
+    const Options options{.cluster_count = clusters, .component_count = 6, .iterations = 8};
+    for (const Level& level : encode_iterative(signal, 20, options).levels) {
+      if (std::sqrt(level.errors.back() / energy) > *bound.max_error) continue;
+      least = std::min(least, bound.cost.bytes({2000, 20}, {clusters, level.component_count}));
     }
   }
   EXPECT_LT(static_cast<double>(storage_bytes(found.encoded.encoding)),
@@ -50,7 +48,7 @@ TEST(EncodeWithin, IsAboutAsSmallAsTheBestOfAllCounts) {
 }
 
 TEST(EncodeWithin, KeepsToTheBytes) {
-  const auto signal = make_signal(4000, kDimension, 8);
+  const auto signal = make_surface(4000, kDimension);
   double last = 0.0;
   for (std::size_t max_bytes : {200000u, 100000u, 30000u}) {
     const Found found = encode_within({.max_error = {}, .max_bytes = max_bytes}, Method::iterative,
@@ -65,7 +63,7 @@ TEST(EncodeWithin, KeepsToTheBytes) {
 }
 
 TEST(EncodeWithin, KeepsToWeightedErrors) {
-  const auto signal = make_signal(3000, kDimension, 8);
+  const auto signal = make_surface(3000, kDimension);
   std::vector<float> weights(3000, 0.1f);
   for (std::size_t p = 0; p < weights.size(); p += 10) weights[p] = 9.1f;
   for (const Norm norm : {Norm::rmse, Norm::maximum}) {
@@ -81,7 +79,7 @@ TEST(EncodeWithin, KeepsToWeightedErrors) {
 }
 
 TEST(EncodeWithin, TakesAllMethods) {
-  const auto signal = make_signal(3000, kDimension, 8);
+  const auto signal = make_surface(3000, kDimension);
   for (const Method method : {Method::fixed, Method::adaptive}) {
     const Found found = encode_within({.max_error = 0.03, .max_bytes = {}}, method, signal,
                                       kDimension, {.iterations = 8});
