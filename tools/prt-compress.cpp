@@ -62,8 +62,7 @@ void add_method(CLI::App& app, Job& job) {
 void add_bounds(CLI::App& app, cpca::Bound& bound) {
   app.option_defaults()->group("Automatic choice of clusters and components");
   auto* const max_error =
-      app.add_option("--max-error", bound.max_error, "The smallest result of this relative error")
-          ->check(CLI::Range(1e-9, 1e9));
+      app.add_option("--max-error", bound.max_error, "The smallest result of this relative error");
   app.add_option_function<std::string>(
          "--norm",
          [&](const std::string& name) {

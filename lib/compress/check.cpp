@@ -23,6 +23,9 @@ void check_files(const Job& job) {
     if (job.model.empty() || job.transfer.empty() || job.output.empty()) {
       reject("a model, its transfer and -o are needed", "Or a signal alone: --signal FILE.npy.");
     }
+    if (job.model.extension() == ".exr") {
+      reject(job.model.string() + " is no model", "Name the model first, then its transfer.");
+    }
     check_room("--clusters", job.cluster_count.value_or(1), gltf::kMaxClusterCount);
     check_room("--components", job.component_count.value_or(0), gltf::kMaxComponentCount);
     check_room("--max-components", job.max_component_count, gltf::kMaxComponentCount);
@@ -49,6 +52,9 @@ void check(const Job& job) {
     reject("--max-components is for --method adaptive", "Leave it out, or take that method.");
   }
   const bool is_bounded = job.bound.max_error || job.bound.max_bytes;
+  if (job.bound.max_error && !(*job.bound.max_error > 0.0)) {
+    reject("--max-error has to be above 0", "0.01 is one percent.");
+  }
   if (is_bounded && (job.cluster_count || job.component_count)) {
     reject("--max-error and --max-bytes choose clusters and components",
            "Leave --clusters and --components out.");

@@ -131,7 +131,9 @@ class Surveyor {
   }
 
   Column encode_fixed() {
-    const Encoding encoding = encode_static(sample_.signal, dimension_, options_).encoding;
+    const Encoded encoded = encode_static(sample_.signal, dimension_, options_);
+    flops_ += encoded.flops;
+    const Encoding& encoding = encoded.encoding;
     Column column{encoding.cluster_count,
                   relative_errors(encoding, sample_.signal, bound_.norm, sample_.point_weights)};
     for (std::size_t i = 0; i < column.errors.size(); ++i) column.errors[i] *= correction(i);

@@ -207,6 +207,9 @@ class Contradictions(ToolTest):
                 ("leaves nothing to choose", "--max-error", 0.1, "--method", "vq"),
                 ("--max-error", "--max-error", 0.1, "--max-bytes", 1000),
                 ("--norm requires --max-error", "--norm", "max"),
+                ("above 0", "--max-error", 0),
+                ("above 0", "--max-error", -1),
+                ("not a finite number", "--max-error", "nan"),
                 ("needs a model", "--point-weights", "area"),
                 ("excludes", "--no-coherence"),
                 ("excludes", "--error-budget", 0.1),
@@ -216,6 +219,8 @@ class Contradictions(ToolTest):
             with self.subTest(options):
                 self.refused(WRONG_USAGE, pattern, "prt-compress", "--signal", signal, *options)
         self.refused(WRONG_USAGE, "are needed", "prt-compress", "a.glb", "a.transfer.exr")
+        self.refused(WRONG_USAGE, "a.transfer.exr is no model. Name the model first",
+                     "prt-compress", "a.transfer.exr", "a.glb", "-o", self.folder / "b.glb")
 
 
 def with_vertex_count(transfer, count):
