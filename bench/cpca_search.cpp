@@ -1,8 +1,8 @@
 // How near the search for --max-error comes to the least cost, and what it takes:
-//   bench_cpca_search signal.npy|signal.transfer.exr max_error [least_clusters most_clusters
-//   [most_components]]
+//   bench_cpca_search signal.npy|signal.transfer.exr max_error [clusters clusters [components]]
 // Beside it every number of clusters of a grid (each 1.25 times the one before) is encoded at full
-// strength with 0, 1, … vectors; between its points log error is interpolated in log clusters.
+// strength with 0, 1, … vectors. The two numbers between which the bound lies are then encoded with
+// just as many vectors, and between them log error is interpolated in log clusters.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,11 +32,15 @@ signal::Matrix read(const std::filesystem::path& path) {
   return {std::move(transfer.values), point_count, static_cast<std::size_t>(transfer.dimension())};
 }
 
-/// Relative errors of full encodings with `clusters`, by number of vectors.
-std::vector<double> encode_column(const signal::Matrix& signal, int clusters, int components) {
-  const cpca::Encoded encoded =
-      cpca::encode_iterative(signal.values, static_cast<int>(signal.column_count),
-                             {.cluster_count = clusters, .component_count = components});
+cpca::Encoded encode(const signal::Matrix& signal, const cpca::Choice& choice) {
+  return cpca::encode_iterative(
+      signal.values, static_cast<int>(signal.column_count),
+      {.cluster_count = choice.cluster_count, .component_count = choice.component_count});
+}
+
+/// Relative errors with 0, 1, … vectors.
+std::vector<double> encode_column(const signal::Matrix& signal, const cpca::Choice& most) {
+  const cpca::Encoded encoded = encode(signal, most);
   const double energy = cpca::weighted_energy(signal.values, signal.row_count, {});
   std::vector<double> errors;
   for (const cpca::Level& level : encoded.levels) {
@@ -45,10 +49,17 @@ std::vector<double> encode_column(const signal::Matrix& signal, int clusters, in
   return errors;
 }
 
-/// The least clusters between two of the grid, by their errors, that keep to the bound.
-int interpolate(int low, int high, double low_error, double high_error, double max_error) {
+/// The least clusters with so many vectors that keep to the bound, by two about it.
+cpca::Choice interpolate(const signal::Matrix& signal, int low, int high, int components,
+                         double max_error) {
+  const auto error = [&](int clusters) {
+    return cpca::relative_error(encode(signal, {clusters, components}).encoding, signal.values,
+                                cpca::Norm::rmse);
+  };
+  const double low_error = error(low), high_error = error(high);
   const double share = std::log(low_error / max_error) / std::log(low_error / high_error);
-  return static_cast<int>(std::ceil(low * std::pow(static_cast<double>(high) / low, share)));
+  return {static_cast<int>(std::ceil(low * std::pow(static_cast<double>(high) / low, share))),
+          components};
 }
 
 Least search_grid(const signal::Matrix& signal, const cpca::Bound& bound, int first, int last,
@@ -59,15 +70,12 @@ Least search_grid(const signal::Matrix& signal, const cpca::Bound& bound, int fi
   int clusters_before = 0;
   for (double count = first; count <= last; count *= kStep) {
     const int clusters = static_cast<int>(std::lround(count));
-    const std::vector<double> errors = encode_column(signal, clusters, most_components);
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      if (errors[i] > *bound.max_error || (!before.empty() && before[i] <= *bound.max_error)) {
-        continue;
-      }
-      const cpca::Choice choice{before.empty() ? clusters
-                                               : interpolate(clusters_before, clusters, before[i],
-                                                             errors[i], *bound.max_error),
-                                static_cast<int>(i)};
+    const std::vector<double> errors = encode_column(signal, {clusters, most_components});
+    for (int i = 0; i <= most_components && !before.empty(); ++i) {
+      const auto level = static_cast<std::size_t>(i);
+      if (errors[level] > *bound.max_error || before[level] <= *bound.max_error) continue;
+      const cpca::Choice choice =
+          interpolate(signal, clusters_before, clusters, i, *bound.max_error);
       const std::size_t bytes = bound.cost.bytes(size, choice);
       fmt::print("  grid: {} clusters, {} components: {} bytes\n", choice.cluster_count, i, bytes);
       std::fflush(stdout);

@@ -26,8 +26,8 @@ constexpr std::size_t kMostTrials = 12;
 constexpr double kMostCost = 3.0;
 /// What another trial must promise: the share of bytes or error that it saves.
 constexpr double kWorthwhile = 0.015;
-/// Room below max_error at first; twice as much after every miss.
-constexpr double kMargin = 0.002;
+/// Room below max_error at first; twice as much after every miss, up to the most.
+constexpr double kMargin = 0.002, kMostMargin = 0.5;
 /// Clusters of an encoding with that many vectors more or fewer are still a good start.
 constexpr int kNearComponents = 2;
 
@@ -90,17 +90,34 @@ class Search {
     return bound_.max_error ? static_cast<double>(trial.bytes) : trial.error;
   }
 
+  Choice choose_aim() const {
+    return choose(survey_.model, aim_, size_, most_clusters(size_.point_count));
+  }
+
+  bool is_known(const Choice& choice) const {
+    return std::any_of(trials_.begin(), trials_.end(),
+                       [&](const Trial& trial) { return trial.choice == choice; });
+  }
+
+  void aim_lower() {
+    margin_ = std::min(kMostMargin, 2.0 * margin_);
+    *aim_.max_error = (1.0 - margin_) * *bound_.max_error;
+  }
+
   std::optional<Choice> choose_next() {
     if (trials_.size() >= kMostTrials) return std::nullopt;
-    const Choice choice = choose(survey_.model, aim_, size_, most_clusters(size_.point_count));
-    const bool is_known = std::any_of(trials_.begin(), trials_.end(),
-                                      [&](const Trial& trial) { return trial.choice == choice; });
-    if (!best_) return is_known ? std::nullopt : std::optional(choice);
+    Choice choice = choose_aim();
+    // What was tried and missed may look right again after others.
+    while (!best_ && bound_.max_error && is_known(choice) && margin_ < kMostMargin) {
+      aim_lower();
+      choice = choose_aim();
+    }
+    if (!best_) return is_known(choice) ? std::nullopt : std::optional(choice);
     // Bytes of adaptive encodings are not quite those of the choice.
     const double expected =
         bound_.max_error ? static_cast<double>(bound_.cost.bytes(size_, choice)) * bytes_share_
                          : survey_.model.error(choice);
-    if (is_known || expected > (1.0 - kWorthwhile) * worth(best_->trial)) return std::nullopt;
+    if (is_known(choice) || expected > (1.0 - kWorthwhile) * worth(best_->trial)) return std::nullopt;
     return cost_with(choice) > kMostCost ? std::nullopt : std::optional(choice);
   }
 
@@ -163,8 +180,7 @@ class Search {
     if (is_within(trial)) {
       if (!best_ || worth(trial) < worth(best_->trial)) best_ = last_;
     } else if (bound_.max_error) {
-      margin_ = std::min(0.5, 2.0 * margin_);
-      *aim_.max_error = (1.0 - margin_) * *bound_.max_error;
+      aim_lower();
     } else {
       // Small clusters of adaptive encodings have more vectors than chosen.
       const double share =
