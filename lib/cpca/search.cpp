@@ -117,7 +117,8 @@ class Search {
     const double expected =
         bound_.max_error ? static_cast<double>(bound_.cost.bytes(size_, choice)) * bytes_share_
                          : survey_.model.error(choice);
-    if (is_known(choice) || expected > (1.0 - kWorthwhile) * worth(best_->trial)) return std::nullopt;
+    if (is_known(choice) || expected > (1.0 - kWorthwhile) * worth(best_->trial))
+      return std::nullopt;
     return cost_with(choice) > kMostCost ? std::nullopt : std::optional(choice);
   }
 
