@@ -261,6 +261,8 @@ void run(const Job& job, Report& report) {
   if (input.document) report.json()["weights"] = cpca::name_of(storage.weight_format);
   if (storage.coherence) {
     report.json().update(cpca::to_json(*storage.coherence, job.storage.coherence));
+  } else if (input.document) {
+    report.json().update(cpca::overdraw_to_json(input.scene.indices(), encoded.encoding));
   }
   if (!job.output.empty()) {
     const StageTimer timer(report, "save");
