@@ -1,6 +1,7 @@
 #include "transfer/matrix_job.h"
 
 #include "core/log.h"
+#include "core/progress.h"
 #include "core/stopwatch.h"
 
 namespace prt::transfer {
@@ -13,10 +14,16 @@ signal::TransferSignal bake_matrices(const mesh::Scene& scene, MatrixOptions opt
   const auto computing = [&] { return stats.bounce_seconds + stats.matrix_seconds; };
   const double before = computing();
   const Stopwatch watch;
-  signal::write_transfer(
-      output, transfer.header(),
-      [&](auto first, auto count, auto values) { transfer.compute(first, count, values); },
-      no_clobber);
+  {
+    Progress progress("matrices", transfer.header().vertex_count(), "vertices");
+    signal::write_transfer(
+        output, transfer.header(),
+        [&](auto first, auto count, auto values) {
+          transfer.compute(first, count, values);
+          progress.advance(count);
+        },
+        no_clobber);
+  }
   report.add_stage("save", watch.seconds() - (computing() - before));
   report.json()["scratch_bytes"] = transfer.scratch_bytes();
   for (const SurfaceLoss& surface : transfer.surfaces().losses()) {
