@@ -25,6 +25,7 @@ struct Options {
   std::string mode = "diffuse";
   std::optional<std::string> brdf;
   std::optional<int> row_count;
+  std::optional<std::string> projection;
 };
 
 void add_options(CLI::App& app, Options& options) {
@@ -71,6 +72,8 @@ void add_matrix_options(CLI::App& app, Options& options) {
                        "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"));
   group(app.add_option("--brdf", options.brdf,
                        std::string(brdf::kBrdfSyntax) + "; from-material if not given"));
+  group(app.add_option("--projection", options.projection, "To compare with [least-squares]"))
+      ->check(CLI::IsMember({"least-squares", "zero-hemisphere"}));
 }
 
 void check_usage(const Options& options) {
@@ -78,6 +81,7 @@ void check_usage(const Options& options) {
   const bool matrix = options.mode == "matrix";
   if (!matrix && options.row_count) reject("--rows needs --mode matrix");
   if (!matrix && options.brdf) reject("--brdf needs --mode matrix");
+  if (!matrix && options.projection) reject("--projection needs --mode matrix");
   if (options.brdf) brdf::parse_brdf(*options.brdf);
   if (options.row_count) sh::hemisphere_functions(*options.row_count);
 }
@@ -98,6 +102,8 @@ signal::TransferSignal bake_diffuse(const Options& options, const mesh::Scene& s
 }
 
 transfer::MatrixOptions matrix_options(const Options& options) {
+  using Projection = sh::HemisphereProjection;
+  const bool zero = options.projection == "zero-hemisphere";
   const transfer::DiffuseOptions& from = options.diffuse;
   return {.brdf = options.brdf.value_or("from-material"),
           .band_count = from.band_count,
@@ -108,6 +114,7 @@ transfer::MatrixOptions matrix_options(const Options& options) {
           .shadowed = from.shadowed,
           .channels = from.channels,
           .seed = from.seed,
+          .projection = zero ? Projection::zero_hemisphere : Projection::least_squares,
           .checkpoint = from.checkpoint};
 }
 
