@@ -55,6 +55,23 @@ T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& 
   return values[corners[0]] * (1 - u - v) + values[corners[1]] * u + values[corners[2]] * v;
 }
 
+MetallicRoughness metallic_roughness_at(const Scene& scene, const Primitive& primitive,
+                                        const Vec2& texcoord) {
+  static const Material kNone;
+  const Material& material = primitive.material < 0
+                                 ? kNone
+                                 : scene.materials[static_cast<std::size_t>(primitive.material)];
+  MetallicRoughness result{material.metallic, material.roughness};
+  if (material.metallic_roughness_image >= 0) {
+    const Vec3 texel = sample_bilinear(
+        scene.images[static_cast<std::size_t>(material.metallic_roughness_image)], texcoord,
+        material.metallic_roughness_wrap_s, material.metallic_roughness_wrap_t);
+    result.metallic *= std::clamp(texel.z, 0.0f, 1.0f);
+    result.roughness *= std::clamp(texel.y, 0.0f, 1.0f);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::size_t Scene::vertex_count() const {
@@ -118,21 +135,16 @@ Vec3 albedo_at_point(const Scene& scene, const Primitive& primitive, std::size_t
 
 MetallicRoughness metallic_roughness_at_vertex(const Scene& scene, const Primitive& primitive,
                                                std::size_t vertex) {
-  static const Material kNone;
-  const Material& material = primitive.material < 0
-                                 ? kNone
-                                 : scene.materials[static_cast<std::size_t>(primitive.material)];
-  MetallicRoughness result{material.metallic, material.roughness};
-  if (material.metallic_roughness_image >= 0) {
-    const TriangleMesh& mesh = primitive.mesh;
-    const Vec3 texel =
-        sample_bilinear(scene.images[static_cast<std::size_t>(material.metallic_roughness_image)],
-                        mesh.texcoords.empty() ? Vec2(0.0f) : mesh.texcoords[vertex],
-                        material.metallic_roughness_wrap_s, material.metallic_roughness_wrap_t);
-    result.metallic *= std::clamp(texel.z, 0.0f, 1.0f);
-    result.roughness *= std::clamp(texel.y, 0.0f, 1.0f);
-  }
-  return result;
+  const TriangleMesh& mesh = primitive.mesh;
+  return metallic_roughness_at(scene, primitive,
+                               mesh.texcoords.empty() ? Vec2(0.0f) : mesh.texcoords[vertex]);
+}
+
+MetallicRoughness metallic_roughness_at_point(const Scene& scene, const Primitive& primitive,
+                                              std::size_t triangle, float u, float v) {
+  const TriangleMesh& mesh = primitive.mesh;
+  return metallic_roughness_at(
+      scene, primitive, interpolate(mesh.texcoords, mesh.triangle(triangle), u, v, Vec2(0.0f)));
 }
 
 namespace {

@@ -70,6 +70,9 @@ struct MetallicRoughness {
 };
 MetallicRoughness metallic_roughness_at_vertex(const Scene& scene, const Primitive& primitive,
                                                std::size_t vertex);
+/// At the point of a triangle with barycentric weights (1-u-v, u, v).
+MetallicRoughness metallic_roughness_at_point(const Scene& scene, const Primitive& primitive,
+                                              std::size_t triangle, float u, float v);
 
 /// Content hash of what a transfer, diffuse or glossy, is baked from and belongs to: positions,
 /// normals, tangents, indices and what the vertices reflect by, of all primitives. Of textures,

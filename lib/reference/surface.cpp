@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "brdf/scene_material.h"
+#include "core/log.h"
 
 namespace prt::reference {
 
@@ -60,12 +60,17 @@ SurfaceLookup::SurfaceLookup(const mesh::Scene& scene, std::string_view brdf) : 
 void SurfaceLookup::make_reflectors(std::string_view text) {
   if (const auto brdf = brdf::parse_brdf(text)) {
     reflectors_.assign(scene_.materials.size() + 1, Reflector(*brdf));
-    return;
+  } else {
+    for (const mesh::Material& material : scene_.materials) {
+      if (material.has_unread_textures) {
+        log::warning("material \"{}\": textures of specular and anisotropy are ignored",
+                     material.name);
+      }
+      reflectors_.emplace_back(material);
+    }
+    reflectors_.emplace_back(mesh::Material());
   }
-  for (const mesh::Material& material : scene_.materials) {
-    reflectors_.emplace_back(brdf::metallic_roughness(material));
-  }
-  reflectors_.emplace_back(brdf::metallic_roughness({}));
+  for (const Reflector& reflector : reflectors_) is_isotropic_.push_back(reflector.is_isotropic());
 }
 
 void SurfaceLookup::add_triangles() {
@@ -110,10 +115,11 @@ std::optional<SurfacePoint> SurfaceLookup::surface_at(const ray::Hit& hit,
   SurfacePoint point;
   point.origin =
       ray::offset_origin(interpolate(a, b, c, hit.u, hit.v), geometric_normal, magnitude);
-  point.reflector = primitive.material < 0
-                        ? &reflectors_.back()
-                        : &reflectors_[static_cast<std::size_t>(primitive.material)];
-  point.frame = point.reflector->is_isotropic()
+  const std::size_t material = primitive.material < 0
+                                   ? reflectors_.size() - 1
+                                   : static_cast<std::size_t>(primitive.material);
+  point.reflector = &reflectors_[material];
+  point.frame = is_isotropic_[material]
                     ? frame_around(normal)
                     : turned(tangent_frame(primitive.mesh, corners, hit.u, hit.v, normal),
                              point.reflector->rotation());
@@ -121,6 +127,7 @@ std::optional<SurfacePoint> SurfaceLookup::surface_at(const ray::Hit& hit,
   point.eye.z = std::max(point.eye.z, kHorizon);
   point.eye.normalize();
   point.albedo = mesh::albedo_at_point(scene_, primitive, triangle, hit.u, hit.v);
+  point.reflection = mesh::metallic_roughness_at_point(scene_, primitive, triangle, hit.u, hit.v);
   return point;
 }
 

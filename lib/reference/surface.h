@@ -25,7 +25,10 @@ struct SurfacePoint {
   /// normal is raised to it.
   Vec3 eye;
   Vec3 albedo;
+  mesh::MetallicRoughness reflection;
   const Reflector* reflector;
+
+  PointBrdf brdf() const { return reflector->at(albedo, reflection); }
 
   Vec3 local_from_world(const Vec3& w) const {
     return {w.dot(frame.x), w.dot(frame.y), w.dot(frame.z)};
@@ -61,6 +64,7 @@ class SurfaceLookup {
   std::vector<std::uint32_t> primitive_of_triangle_;
   std::vector<std::uint32_t> first_triangle_;  // of each primitive
   std::vector<Reflector> reflectors_;          // of each material; last, of primitives without one
+  std::vector<std::uint8_t> is_isotropic_;     // each of them
 };
 
 }  // namespace prt::reference

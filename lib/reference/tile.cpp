@@ -161,7 +161,7 @@ void Tile::sample_brdfs(int bounce) {
   std::size_t kept = 0;
   for (Path path : paths_) {
     const SurfacePoint& vertex = path.vertex;
-    const PointBrdf brdf = vertex.reflector->at(vertex.albedo);
+    const PointBrdf brdf = vertex.brdf();
     const auto terms = brdf.terms();
     const brdf::Direction eye(vertex.eye);
     const Vec2 u = point(path.slot, scatter_pair(bounce));
@@ -188,7 +188,7 @@ void Tile::scatter_to_light(int bounce) {
     const SurfacePoint& vertex = path.vertex;
     const brdf::Direction light(vertex.local_from_world(sample.direction)), eye(vertex.eye);
     if (light.z <= 0.0 || sample.pdf <= 0.0f) continue;
-    const PointBrdf brdf = vertex.reflector->at(vertex.albedo);
+    const PointBrdf brdf = vertex.brdf();
     const brdf::Colour value = brdf::evaluate(brdf.terms(), light, eye);
     if (value == brdf::Colour(0)) continue;
     const double pdf = brdf::pdf(brdf.terms(), light, eye);

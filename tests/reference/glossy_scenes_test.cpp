@@ -88,6 +88,42 @@ TEST(GlossyScenes, MaterialsAreSeenInTheFrameOfTheTangent) {
   }
 }
 
+// A texture of two texels: what is beside their middles has the roughness and metallic of one.
+TEST(GlossyScenes, TexturesOfRoughnessAndMetallicAreThoseOfThePoint) {
+  mesh::Scene scene;
+  const int material = add_material(scene, Vec3(0.8f, 0.5f, 0.3f));
+  mesh::Material& from = scene.materials.back();
+  from.metallic = 1.0f;
+  from.roughness = 0.8f;
+  from.metallic_roughness_image = 0;
+  from.metallic_roughness_wrap_s = from.metallic_roughness_wrap_t = mesh::Wrap::clamp;
+  image::Image texture(2, 1, 3);
+  texture.pixels = {0.0f, 0.5f, 1.0f, 0.0f, 1.0f, 0.25f};
+  scene.images.push_back(texture);
+  add_quad(scene, {-9.0f, 0.0f, 9.0f}, {18.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -18.0f}, material);
+  scene.primitives[0].mesh.texcoords = {{0.0f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}, {0.0f, 0.0f}};
+  const mesh::Frame frame = mesh::frame_at_vertex(scene.primitives[0].mesh, 0);
+  const sh::Light light =
+      sh::directional_light(5, Vec3(-1.0f, 2.0f, -1.0f).normalized(), Vec3(3.0f, 2.0f, 1.0f));
+  for (const bool right : {false, true}) {
+    SCOPED_TRACE(right);
+    const brdf::Brdf brdf = brdf_of({.base_color = {double{0.8f}, double{0.5f}, double{0.3f}},
+                                     .metallic = right ? 0.25 : 1.0,
+                                     .roughness = right ? 0.8 : 0.4});
+    const float x0 = right ? 7.0f : -7.0f;
+    const auto camera = look({x0 + 1.0f, 1.5f, 1.0f}, {x0, 0.0f, 0.0f}, 20.0f);
+    Options options = small(2, 1 << 14, 0);
+    options.brdf = "from-material";
+    const Result result = trace(scene, camera, BandLimitedIllumination(light), options);
+    const Comparison found = compare(result, [&](int x, int y) {
+      return reflected(brdf, frame, -pixel_direction(camera, 2, x, y), 96,
+                       [&](const Vec3& w) { return sh::light_radiance(light, w); });
+    });
+    expect_equal(found, 4, 3e-3);
+    EXPECT_LT(found.noise, 0.03 * found.energy);
+  }
+}
+
 // A sun of one texel and a sky: sharp lobes find the sky, the sun must be sampled.
 TEST(GlossyScenes, SharpAndBroadLobesUnderASmallSun) {
   image::Image map(128, 64, 3);
