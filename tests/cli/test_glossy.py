@@ -55,6 +55,7 @@ class GlossyTest(ToolTest):
         bake = ("prt-transfer", self.model, "-o", self.output)
         self.refused(WRONG_USAGE, "--rows needs --mode matrix", *bake, "--rows", 24)
         self.refused(WRONG_USAGE, "--brdf needs --mode matrix", *bake, "--brdf", "phong:10")
+        self.refused(WRONG_USAGE, "--projection needs", *bake, "--projection", "least-squares")
         matrix = (*bake, "--mode", "matrix")
         self.refused(WRONG_USAGE, "n² - 1", *matrix, "--rows", 23)
         self.refused(WRONG_USAGE, "not a BRDF", *matrix, "--brdf", "ggx:2")
