@@ -1,5 +1,5 @@
 // Table 1 of [Sloan03] for models of one's own:
-//   bench_cpca_table a.glb a.transfer.exr [b.glb b.transfer.exr …]
+//   bench_cpca_table [--components N] a.glb a.transfer.exr [b.glb b.transfer.exr …]
 // Points, signal, clusters and vectors, encoding by static and by iterative CPCA, then frames a
 // second of the iterative encoding, coherent as prt-compress makes it by default: in one draw call,
 // by superclusters, and the signal itself. Frames are 512x512, without antialiasing or background.
@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "core/error.h"
@@ -23,7 +25,9 @@ namespace {
 
 using namespace prt;
 
-constexpr cpca::Options kOptions{.cluster_count = 256, .component_count = 8, .iterations = 15};
+cpca::Options options_of(int component_count) {
+  return {.cluster_count = 256, .component_count = component_count, .iterations = 15};
+}
 constexpr int kSize = 512;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -36,9 +40,10 @@ struct Encoding {
 };
 
 template <class Encoder>
-Encoding encode(Encoder encoder, const signal::TransferSignal& signal) {
+Encoding encode(Encoder encoder, const signal::TransferSignal& signal,
+                const cpca::Options& options) {
   const auto start = std::chrono::steady_clock::now();
-  cpca::Encoding encoding = encoder(signal.values, signal.dimension(), kOptions).encoding;
+  cpca::Encoding encoding = encoder(signal.values, signal.dimension(), options).encoding;
   const double seconds = seconds_since(start);
   const std::vector<double> errors = cpca::point_errors(encoding, signal.values);
   return {std::move(encoding), seconds, std::accumulate(errors.begin(), errors.end(), 0.0)};
@@ -65,12 +70,13 @@ double frames_per_second(runtime::Renderer& renderer, const runtime::Model& mode
   return 1.0 / seconds[seconds.size() / 2];
 }
 
-void print_row(const std::filesystem::path& glb, const std::filesystem::path& transfer_file) {
+void print_row(const std::filesystem::path& glb, const std::filesystem::path& transfer_file,
+               const cpca::Options& options) {
   const mesh::Scene scene = gltf::Document::load(glb).scene();
   const signal::TransferSignal signal = signal::read_transfer(transfer_file);
   signal::check_belongs_to(signal, scene, transfer_file);
-  const Encoding by_static = encode(cpca::encode_static, signal);
-  Encoding by_iterative = encode(cpca::encode_iterative, signal);
+  const Encoding by_static = encode(cpca::encode_static, signal, options);
+  Encoding by_iterative = encode(cpca::encode_iterative, signal, options);
   const cpca::Coherence coherence = cpca::make_coherent(
       signal.values, scene.indices(), signal.row_count, {}, by_iterative.encoding);
   const gltf::PrecomputedTransfer transfer{.band_count = signal.band_count,
@@ -91,32 +97,39 @@ void print_row(const std::filesystem::path& glb, const std::filesystem::path& tr
       glb.stem().string(), signal.vertex_count(),
       fmt::format("{}x{}x{}", signal.row_count, signal.band_count * signal.band_count,
                   signal.channel_count),
-      kOptions.cluster_count, kOptions.component_count, by_static.seconds, by_static.squared_error,
+      options.cluster_count, options.component_count, by_static.seconds, by_static.squared_error,
       by_iterative.seconds, by_iterative.squared_error, rate(runtime::Draw::single),
       rate(runtime::Draw::clusters), rate(runtime::Draw::uncompressed));
   std::fflush(stdout);
 }
 
-void print_table(int argc, char** argv) {
+void print_table(const std::vector<std::string>& files, int component_count) {
+  const cpca::Options options = options_of(component_count);
   const gl::HeadlessContext context;
   fmt::print("{} threads; {}; {} iterations\n", thread_count(), gl::description(),
-             kOptions.iterations);
+             options.iterations);
   fmt::print("{:46}{:^20}{:^20}{:^27}\n", "", "static", "iterative", "frames a second");
   fmt::print("{:14} {:>7} {:>10} {:>4} {:>3} | {:>7} {:>9} | {:>7} {:>9} | {:>6} {:>7} {:>12}\n",
              "model", "m_p", "matrix", "m_c", "n'", "s", "SE", "s", "SE", "single", "by s.c.",
              "uncompressed");
-  for (int i = 1; i + 1 < argc; i += 2) print_row(argv[i], argv[i + 1]);
+  for (std::size_t i = 0; i < files.size(); i += 2) print_row(files[i], files[i + 1], options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3 || argc % 2 == 0) {
-    fmt::print(stderr, "usage: bench_cpca_table a.glb a.transfer.exr [b.glb b.transfer.exr …]\n");
+  std::vector<std::string> files(argv + 1, argv + argc);
+  int component_count = 8;
+  if (files.size() > 2 && files[0] == "--components") {
+    component_count = std::atoi(files[1].c_str());
+    files.erase(files.begin(), files.begin() + 2);
+  }
+  if (files.empty() || files.size() % 2 != 0 || component_count < 1) {
+    fmt::print(stderr, "usage: bench_cpca_table [--components N] a.glb a.transfer.exr […]\n");
     return 2;
   }
   try {
-    print_table(argc, argv);
+    print_table(files, component_count);
   } catch (const Error& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;
