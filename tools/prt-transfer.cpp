@@ -1,5 +1,4 @@
 // prt-transfer: per-vertex transfer of a model, diffuse or glossy (docs/tools/prt-transfer.md).
-
 #include <map>
 #include <optional>
 
@@ -17,7 +16,6 @@
 namespace {
 
 using namespace prt;
-
 struct Options {
   std::filesystem::path input, output;
   transfer::DiffuseOptions diffuse;
