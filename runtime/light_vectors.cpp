@@ -9,7 +9,7 @@ namespace prt::runtime {
 
 namespace {
 
-constexpr int kTableUnit = 1;
+constexpr int kLightUnit = 1;
 
 }  // namespace
 
@@ -42,8 +42,8 @@ void LightVectors::set(const LightField& field,
 void LightVectors::bind(const gl::Program& program) const {
   if (!varies()) return program.set("u_light", vectors_);
   grid_.bind(program);
-  program.set("u_lights", kTableUnit);
-  table_.bind(kTableUnit);
+  program.set("u_lights", kLightUnit);
+  table_.bind(kLightUnit);
 }
 
 }  // namespace prt::runtime

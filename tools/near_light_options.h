@@ -1,30 +1,24 @@
 // The options of lights near the model, which prt-render and prt-view share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <span>
 #include <vector>
 
+#include "cli/options.h"
 #include "runtime/light_field.h"
 
 namespace prt {
 
 /// Adds to the current group of options. Both kinds of light can be given any number of times.
-inline void add_near_lights(CLI::App& app, std::vector<runtime::NearLight>& lights,
+inline void add_near_lights(cli::Options& app, std::vector<runtime::NearLight>& lights,
                             int& grid_size) {
-  const auto add = [&](const char* name, std::size_t number_count, const char* type,
-                       const char* help) {
-    app.add_option_function<std::vector<float>>(
-           name,
-           [&lights, number_count](const std::vector<float>& numbers) {
-             for (std::size_t first = 0; first < numbers.size(); first += number_count)
-               lights.push_back(
-                   runtime::near_light(std::span(numbers).subspan(first, number_count)));
+  const auto add = [&](const char* name, int number_count, const char* type, const char* help) {
+    app.add_repeated_numbers(
+           name, number_count,
+           [&lights](std::span<const float> numbers) {
+             lights.push_back(runtime::near_light(numbers));
            },
            help)
-        ->expected(static_cast<int>(number_count))
-        ->delimiter(',')
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name(type);
   };
   add("--point-light", 6, "X,Y,Z,R,G,B",
@@ -35,7 +29,7 @@ inline void add_near_lights(CLI::App& app, std::vector<runtime::NearLight>& ligh
          "--light-grid", grid_size,
          "Near lights are sampled at N x N x N points over the model and blended; 1: at its "
          "middle")
-      ->check(CLI::Range(1, runtime::kMaxGridSize));
+      ->check(cli::Range(1, runtime::kMaxGridSize));
 }
 
 }  // namespace prt

@@ -60,7 +60,7 @@ struct Arguments {
   std::string up = "y";
 };
 
-void add_geometry_options(CLI::App& app, Arguments& arguments) {
+void add_geometry_options(prt::cli::Options& app, Arguments& arguments) {
   prt::mesh::PrepareOptions& prepare = arguments.options.prepare;
   const char* group = "Geometry";
   app.add_option("--max-edge", prepare.max_edge,
@@ -73,7 +73,7 @@ void add_geometry_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--crease-angle", prepare.repair.crease_angle_degrees,
                  "Computed normals: edges sharper than this many degrees stay hard; 180: none; "
                  "auto: 60, or none in a scan, where they are few")
-      ->check(CLI::Range(0.0, 180.0))
+      ->check(prt::cli::Range(0.0, 180.0))
       ->default_str("auto")
       ->group(group);
   app.add_flag("--recompute-normals", prepare.repair.recompute_normals,
@@ -83,18 +83,17 @@ void add_geometry_options(CLI::App& app, Arguments& arguments) {
       ->check(prt::cli::above_zero())
       ->group(group);
   app.add_option("--up", arguments.up, "Axis that points up in a mesh file")
-      ->check(CLI::IsMember({"y", "z"}))
+      ->check(prt::cli::IsMember({"y", "z"}))
       ->group(group);
 }
 
-void add_options(CLI::App& app, Arguments& arguments) {
+void add_options(prt::cli::Options& app, Arguments& arguments) {
   app.add_option("input", arguments.input, "Model to read")->required();
   app.add_option("-o,--output", arguments.output, ".glb to write")->required();
   app.add_option("--base-color", arguments.base_color,
                  "Linear R,G,B in 0..1 of what has no material of its own")
-      ->delimiter(',')
-      ->expected(3)
-      ->check(CLI::Range(0.0, 1.0))
+      ->numbers(3)
+      ->check(prt::cli::Range(0.0, 1.0))
       ->group("Material");
   add_geometry_options(app, arguments);
   prt::gltf::Limits& limits = arguments.options.limits;
@@ -129,7 +128,7 @@ int main(int argc, char** argv) {
                       "writes a .glb that the other tools can bake.",
                       "prt-import bunny.obj -o bunny.glb --base-color 0.7,0.7,0.7");
   Arguments arguments;
-  add_options(tool.app(), arguments);
+  add_options(tool.options(), arguments);
   return tool.run(argc, argv,
                   [&](prt::Report& report) { import(arguments, tool.common(), report); });
 }

@@ -22,7 +22,7 @@ struct Options {
   bool json = false, hemisphere = false;
 };
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(cli::Options& app, Options& options) {
   app.add_option("FILE", options.file,
                  "Model (.glb, .gltf), transfer (.transfer.exr), light (.json) or image");
   app.add_flag("--json", options.json, "JSON instead of text");
@@ -35,7 +35,7 @@ void add_options(CLI::App& app, Options& options) {
                  "--transfer or NAME.transfer.exr beside FILE, of errors and other encodings")
       ->group("Compression error");
   app.add_option("--compare", options.compare, "Two images, the second being the reference")
-      ->expected(2)
+      ->values(2)
       ->group("Comparison");
   app.add_option("--mask", options.mask, "Image: count only pixels above 0.5")->group("Comparison");
   app.add_option("--noise", options.noise, "Standard error of the reference")->group("Comparison");
@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   cli::Tool tool("prt-inspect", "Shows what is in a file, checks it, and measures errors.",
                  "prt-inspect bunny.prt.glb --transfer bunny.transfer.exr --plots .\n"
                  "  prt-inspect --compare bunny.exr reference.exr --heatmap difference.png");
-  add_options(tool.app(), options);
+  add_options(tool.options(), options);
   return tool.run(argc, argv, [&](Report& report) {
     check_usage(options);
     check_files(options, tool.common());

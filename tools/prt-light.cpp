@@ -74,18 +74,16 @@ void run(const Options& options, const cli::CommonOptions& common, Report& repor
   report.add_output(options.output);
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(cli::Options& app, Options& options) {
   app.add_option("input", options.input, "Latitude-longitude map: .exr .hdr .png .jpg");
   app.add_option("-o,--output", options.output, "Light file, .json")->required();
   app.add_option("--bands", options.band_count, "Bands of spherical harmonics")
-      ->check(CLI::Range(1, sh::kMaxBandCount));
+      ->check(cli::Range(1, sh::kMaxBandCount));
   app.add_option("--max-pixels", options.max_pixels, "Pixels allowed in the map");
   const auto add_light = [&](const char* name, AnalyticKind kind, const char* shape,
                              const char* help) {
     app.add_option(name, options.analytic[kind], help)
-        ->expected(number_count(kind))
-        ->delimiter(',')
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->repeated_numbers(number_count(kind))
         ->type_name(shape)
         ->default_str("")
         ->group("Lights");
@@ -96,19 +94,19 @@ void add_options(CLI::App& app, Options& options) {
   add_light("--directional", AnalyticKind::directional, "X,Y,Z,R,G,B",
             "Direction to it, irradiance on a facing surface");
 
-  const CLI::Range degrees(-36000.0, 36000.0);
-  CLI::Option* rotate = app.add_option("--rotate", options.rotation,
+  const cli::Validator degrees = cli::Range(-36000.0, 36000.0);
+  cli::Option* rotate = app.add_option("--rotate", options.rotation,
                                        "Turns the light about +X, then +Y, then +Z (degrees)");
-  rotate->expected(3)->delimiter(',')->type_name("X,Y,Z")->check(degrees)->group("Changes");
+  rotate->numbers(3)->type_name("X,Y,Z")->check(degrees)->group("Changes");
   app.add_option("--rotate-y", options.rotation[1], "Turns the light about +Y (degrees)")
       ->excludes(rotate)
       ->check(degrees)
       ->group("Changes");
   app.add_option("--exposure", options.edit.exposure, "Radiance times 2^EXPOSURE (stops)")
-      ->check(CLI::Range(-64.0, 64.0))
+      ->check(cli::Range(-64.0, 64.0))
       ->group("Changes");
   app.add_option("--window", options.window, "Damps higher bands against ringing")
-      ->check(CLI::IsMember({"none", "hann", "lanczos"}))
+      ->check(cli::IsMember({"none", "hann", "lanczos"}))
       ->type_name("NAME")
       ->group("Changes");
 }
@@ -121,7 +119,7 @@ int main(int argc, char** argv) {
                  "lights given are added; the sum is turned, exposed and windowed.",
                  "prt-light sky.exr -o sky.json --bands 5 --rotate-y 90");
   Options options;
-  add_options(tool.app(), options);
+  add_options(tool.options(), options);
   return tool.run(argc, argv, [&](Report& report) {
     options.edit.rotation = Vec3(options.rotation[0], options.rotation[1], options.rotation[2]);
     options.edit.window = sh::window_from_name(options.window);

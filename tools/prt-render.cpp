@@ -5,10 +5,8 @@
 
 #include "brdf/brdf.h"
 #include "cli/checkpoint.h"
-#include "cli/choice_option.h"
 #include "cli/paths.h"
 #include "cli/tool.h"
-#include "cli/vector_option.h"
 #include "gl/context.h"
 #include "ray/engine.h"
 #include "runtime/reference/reference_job.h"
@@ -35,77 +33,76 @@ const std::map<std::string, Background> kBackgrounds = {{"environment", Backgrou
                                                         {"color", Background::color},
                                                         {"none", Background::none}};
 
-void add_picture_options(CLI::App& app, PictureOptions& options) {
+void add_picture_options(prt::cli::Options& app, PictureOptions& options) {
   app.add_option("model", options.model, "The model, .glb or .gltf")->required();
   app.add_option("-o,--output", options.output, "The picture: .png, or .exr (linear, alpha)")
       ->required();
 
-  app.option_defaults()->group("Light");
+  app.start_group("Light");
   app.add_option("--light", options.light,
                  "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
   app.add_option("--bands", options.band_count,
                  "Bands that a map is projected to; 0: those of the transfer, else 5")
-      ->check(CLI::Range(0, 16));
+      ->check(prt::cli::Range(0, 16));
   app.add_option("--rotate-light", options.light_rotation,
                  "Turn the light about +Y, degrees, counter-clockwise from above");
 
-  app.option_defaults()->group("Camera");
-  prt::cli::add_vector(app, "--eye", options.eye, "Where the camera stands [frames the model]");
-  prt::cli::add_vector(app, "--target", options.target, "What it looks at [the model's middle]");
-  prt::cli::add_vector(app, "--up", options.up, "Up in the picture [0,1,0]");
+  app.start_group("Camera");
+  app.add_vector("--eye", options.eye, "Where the camera stands [frames the model]");
+  app.add_vector("--target", options.target, "What it looks at [the model's middle]");
+  app.add_vector("--up", options.up, "Up in the picture [0,1,0]");
   app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees");
 
-  app.option_defaults()->group("Picture");
-  prt::cli::add_size(app, options.width, options.height, "Width and height in pixels [1024x1024]");
+  app.start_group("Picture");
+  app.add_size("--size", options.width, options.height, "Width and height in pixels [1024x1024]");
   app.add_option("--exposure", options.exposure, "Stops, for .png");
-  prt::cli::add_choice(app, "--background", options.background, kBackgrounds,
-                       "Behind the model [environment]");
-  prt::cli::add_vector(app, "--background-color", options.background_color, "Linear [0.1,0.1,0.1]");
+  app.add_choice("--background", options.background, kBackgrounds,
+                 "Behind the model [environment]");
+  app.add_vector("--background-color", options.background_color, "Linear [0.1,0.1,0.1]");
 }
 
-void add_render_options(CLI::App& app, prt::runtime::RenderOptions& options) {
-  app.option_defaults()->group("Real-time rendering");
+void add_render_options(prt::cli::Options& app, prt::runtime::RenderOptions& options) {
+  app.start_group("Real-time rendering");
   app.add_option("--transfer", options.transfer, "Uncompressed transfer of prt-transfer (.exr)");
-  prt::cli::add_choice(
-      app, "--draw", options.draw, kDraws,
+  app.add_choice(
+      "--draw", options.draw, kDraws,
       "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
       "with --transfer]");
-  prt::cli::add_choice(
-      app, "--passes", options.passes, kPasses,
-      "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
+  app.add_choice("--passes", options.passes, kPasses,
+                 "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
   prt::add_near_lights(app, options.near_lights, options.grid_size);
-  prt::cli::add_choice(app, "--show", options.show, kShows, "What to show [radiance]");
+  app.add_choice("--show", options.show, kShows, "What to show [radiance]");
   app.add_option("--antialias", options.sample_count,
                  "Samples in a pixel, at most what the driver has; 1: pixel centres")
-      ->check(CLI::Range(1, 64));
+      ->check(prt::cli::Range(1, 64));
 }
 
-void add_reference_options(CLI::App& app, prt::runtime::ReferenceOptions& options,
+void add_reference_options(prt::cli::Options& app, prt::runtime::ReferenceOptions& options,
                            bool& reference) {
-  app.option_defaults()->group("Reference");
-  CLI::Option* const flag = app.add_flag("--reference", reference,
-                                         "Path trace instead: ground truth, no transfer needed");
+  app.start_group("Reference");
+  prt::cli::Option* const flag = app.add_flag(
+      "--reference", reference, "Path trace instead: ground truth, no transfer needed");
   app.add_option("--brdf", options.brdf,
                  std::string(prt::brdf::kBrdfSyntax) +
                      "; the one that the transfer was baked with, else lambert, if not given")
       ->needs(flag);
   app.add_option("--samples", options.sample_count, "Paths in a pixel")
-      ->check(CLI::Range(1, 1 << 20))
+      ->check(prt::cli::Range(1, 1 << 20))
       ->needs(flag);
   app.add_option("--bounces", options.bounce_count, "Interreflections; 0: direct light only")
-      ->check(CLI::Range(0, 64))
+      ->check(prt::cli::Range(0, 64))
       ->needs(flag);
-  app.add_option_function<std::string>(
+  app.add_text(
          "--light-mode", [&](const std::string& mode) { options.full_map = mode == "full"; },
          "Light of the bands, or the full environment map [band-limited]")
-      ->check(CLI::IsMember({"band-limited", "full"}))
+      ->check(prt::cli::IsMember({"band-limited", "full"}))
       ->needs(flag);
   app.add_option("--noise-output", options.noise,
                  "Write the standard error of each pixel too (.exr), for prt-inspect --noise")
       ->needs(flag);
   for (const char* name : {"--transfer", "--draw", "--passes", "--show", "--point-light",
                            "--sphere-light", "--light-grid"})
-    flag->excludes(app.get_option(name));
+    flag->excludes(app.get(name));
 }
 
 }  // namespace
@@ -116,9 +113,9 @@ int main(int argc, char** argv) {
   prt::runtime::RenderOptions options;
   prt::runtime::ReferenceOptions reference_options;
   bool reference = false;
-  add_picture_options(tool.app(), options.picture);
-  add_render_options(tool.app(), options);
-  add_reference_options(tool.app(), reference_options, reference);
+  add_picture_options(tool.options(), options.picture);
+  add_render_options(tool.options(), options);
+  add_reference_options(tool.options(), reference_options, reference);
   tool.add_component("Embree", prt::ray::embree_version);
   tool.add_component("OpenGL", [] {
     const prt::gl::HeadlessContext context;

@@ -26,23 +26,23 @@ struct Options {
   std::optional<std::string> projection;
 };
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(cli::Options& app, Options& options) {
   app.add_option("input", options.input, "Model (.glb, .gltf)")->required();
   app.add_option("-o,--output", options.output, "Transfer file (.transfer.exr)")->required();
-  CLI::Option* const bands =
+  cli::Option* const bands =
       app.add_option("--bands", options.diffuse.band_count, "Bands of the light");
-  bands->check(CLI::Range(1, 16))->capture_default_str()->group("Transfer");
-  CLI::Option* const rays = app.add_option("--rays", options.diffuse.ray_count,
+  bands->check(cli::Range(1, 16))->group("Transfer");
+  cli::Option* const rays = app.add_option("--rays", options.diffuse.ray_count,
                                            "Shadow rays per vertex, over its hemisphere");
-  rays->check(CLI::Range(1, 1 << 17))->capture_default_str()->group("Transfer");
-  CLI::Option* const bounces =
+  rays->check(cli::Range(1, 1 << 17))->group("Transfer");
+  cli::Option* const bounces =
       app.add_option("--bounces", options.diffuse.bounce_count, "Bounces of interreflection");
-  bounces->check(CLI::Range(0, 1000))->capture_default_str()->group("Transfer");
+  bounces->check(cli::Range(0, 1000))->group("Transfer");
   app.add_option("--bounce-rays", options.diffuse.bounce_ray_count,
                  "Rays per vertex for what is reflected; 0: a quarter of --rays")
-      ->check(CLI::Range(0, 1 << 14))
+      ->check(cli::Range(0, 1 << 14))
       ->needs(bounces)
-      ->capture_default_str()
+
       ->group("Transfer");
   app.add_flag("--unshadowed", options.unshadowed, "No rays: the closed form of a convex body")
       ->excludes(bounces)
@@ -52,26 +52,25 @@ void add_options(CLI::App& app, Options& options) {
       {"auto", transfer::ChannelMode::automatic},
       {"1", transfer::ChannelMode::one},
       {"3", transfer::ChannelMode::three}};
-  app.add_option_function<std::string>(
+  app.add_text(
          "--channels",
          [&options, modes](const std::string& name) { options.diffuse.channels = modes.at(name); },
          "Colour channels; auto: 3 where an albedo is coloured")
-      ->check(CLI::IsMember({"auto", "1", "3"}))
+      ->check(cli::IsMember({"auto", "1", "3"}))
       ->default_str("auto")
       ->group("Transfer");
 }
 
-void add_matrix_options(CLI::App& app, Options& options) {
-  const auto group = [](CLI::Option* option) { return option->group("Glossy transfer"); };
+void add_matrix_options(cli::Options& app, Options& options) {
+  const auto group = [](cli::Option* option) { return option->group("Glossy transfer"); };
   group(app.add_option("--mode", options.mode, "diffuse: a vector a vertex; matrix: glossy"))
-      ->check(CLI::IsMember({"diffuse", "matrix"}))
-      ->capture_default_str();
+      ->check(cli::IsMember({"diffuse", "matrix"}));
   group(app.add_option("--rows", options.row_count,
                        "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"));
   group(app.add_option("--brdf", options.brdf,
                        std::string(brdf::kBrdfSyntax) + "; from-material if not given"));
   group(app.add_option("--projection", options.projection, "To compare with [least-squares]"))
-      ->check(CLI::IsMember({"least-squares", "zero-hemisphere"}));
+      ->check(cli::IsMember({"least-squares", "zero-hemisphere"}));
 }
 
 void check_usage(const Options& options) {
@@ -142,8 +141,8 @@ int main(int argc, char** argv) {
                  "shadows and interreflection, as spherical harmonic transfer vectors or matrices.",
                  "prt-transfer bunny.glb -o bunny.transfer.exr --bands 5 --rays 2048 --bounces 2");
   Options options;
-  add_options(tool.app(), options);
-  add_matrix_options(tool.app(), options);
+  add_options(tool.options(), options);
+  add_matrix_options(tool.options(), options);
   tool.add_component("Embree", ray::embree_version);
   tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) { bake(options, tool.common(), report); });

@@ -22,27 +22,27 @@ const std::map<std::string, std::pair<Draw, Show>> kModes = {
     {"supercluster-colors", {Draw::single, Show::superclusters}},
     {"error", {Draw::single, Show::error}}};
 
-void add_options(CLI::App& app, ViewerOptions& options) {
+void add_options(prt::cli::Options& app, ViewerOptions& options) {
   app.add_option("model", options.model, "A model of prt-compress (.glb); none: drop one");
   app.add_option("--transfer", options.transfer, "Its uncompressed transfer, to compare");
   app.add_option("--light", options.light,
                  "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
   app.add_option("--bands", options.band_count, "Bands that a map is projected to; 0: the model's")
-      ->check(CLI::Range(0, 16));
-  app.add_option_function<std::string>(
+      ->check(prt::cli::Range(0, 16));
+  app.add_text(
          "--mode",
          [&](const std::string& mode) { std::tie(options.draw, options.show) = kModes.at(mode); },
          "What to show first [single]")
-      ->check(CLI::IsMember(kModes));
+      ->check(prt::cli::IsMember(kModes));
   app.add_option("--exposure", options.exposure, "Stops");
   app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees")
-      ->check(CLI::Range(1.0, 170.0));
+      ->check(prt::cli::Range(1.0, 170.0));
   app.add_flag("--animate", options.animate, "Turn the light as time goes by");
   prt::add_near_lights(app, options.near_lights, options.grid_size);
-  app.option_defaults()->group("Screenshot");
+  app.start_group("Screenshot");
   app.add_option("--screenshot", options.screenshot, "Write the window to a .png and end");
   app.add_option("--frames", options.screenshot_frame_count, "Frames drawn before the screenshot")
-      ->check(CLI::Range(1, 100000));
+      ->check(prt::cli::Range(1, 100000));
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
                       "to turn the light, drop models and lights on it.",
                       "prt-view bunny.prt.glb --light sunset.json");
   ViewerOptions options;
-  add_options(tool.app(), options);
+  add_options(tool.options(), options);
   return tool.run(argc, argv, [&](prt::Report& report) {
     prt::cli::check_paths({options.model, options.transfer, options.light},
                           {{options.screenshot, {".png"}, {}}}, tool.common());

@@ -4,9 +4,9 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "brdf/cubature.h"
+#include "brdf/half_vector.h"
 #include "core/parallel.h"
 #include "sh/basis.h"
 
@@ -14,7 +14,6 @@ namespace prt::brdf {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 Direction direction(const Point& angles) {
   const double s = std::sin(angles.x);

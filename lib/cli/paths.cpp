@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -28,7 +29,8 @@ void check_different(const fs::path& written, const char* role, const fs::path& 
 }
 
 void check_extension(const Output& output) {
-  const std::string found = CLI::detail::to_lower(output.path.extension().string());
+  std::string found = output.path.extension().string();
+  std::ranges::transform(found, found.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::ranges::count(output.extensions, found) == 0) {
     throw Error(ErrorKind::usage, "not a kind of file that this tool writes",
                 {.file = output.path.string(),

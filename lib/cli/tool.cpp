@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -51,16 +52,6 @@ void check_unsigned(const CLI::Option& option) {
   }
 }
 
-CLI::Validator number_check(const char* type, bool (*holds)(double), const char* expected) {
-  return CLI::Validator(
-      [holds, expected](const std::string& value) {
-        double number = 0.0;
-        const bool good = CLI::detail::lexical_cast(value, number) && holds(number);
-        return good ? std::string() : fmt::format("expected {}, found {}", expected, value);
-      },
-      type);
-}
-
 /// Results that do not arrive (a full disk, a closed pipe) are a failure.
 void flush_results() {
   std::cout.flush();
@@ -71,38 +62,34 @@ void flush_results() {
 
 }  // namespace
 
-CLI::Validator at_least_zero() {
-  return number_check(
-      "NONNEGATIVE", [](double x) { return x >= 0.0; }, "a number from 0 up");
-}
-
-CLI::Validator above_zero() {
-  return number_check(
-      "POSITIVE", [](double x) { return x > 0.0; }, "a number above 0");
-}
-
 Tool::Tool(std::string name, std::string description, std::string example)
-    : name_(std::move(name)), app_(std::move(description), name_) {
-  app_.footer("Example:\n  " + example);
-  app_.get_formatter()->column_width(34);
+    : name_(std::move(name)),
+      app_(std::make_unique<CLI::App>(std::move(description), name_)),
+      options_(*app_) {
+  app_->footer("Example:\n  " + example);
+  app_->get_formatter()->column_width(34);
   // The last of repeated options counts, so that makefiles and scripts can override their defaults.
-  app_.option_defaults()->always_capture_default()->multi_option_policy(
+  app_->option_defaults()->always_capture_default()->multi_option_policy(
       CLI::MultiOptionPolicy::TakeLast);
-  app_.set_version_flag("--version", [this] { return version(); });
-  app_.failure_message([this](const CLI::App*, const CLI::Error& error) {
+  app_->set_version_flag("--version", [this] { return version(); });
+  app_->failure_message([this](const CLI::App*, const CLI::Error& error) {
     return fmt::format("{}: {}. {} --help says more.\n", name_, error.what(), name_);
   });
   const char* group = "Common";
-  app_.add_option("--threads", common_.threads, "Threads; 0: all")
-      ->check(CLI::Range(0, 1024))
+  options_.add_option("--threads", common_.threads, "Threads; 0: all")
+      ->check(Range(0, 1024))
       ->group(group);
-  app_.add_option("--seed", common_.seed, "Seed of everything random")->group(group);
-  app_.add_option("--report", common_.report, "Write a JSON report of the run")->group(group);
-  app_.add_flag("--no-clobber", common_.no_clobber, "Fail when the output exists")->group(group);
-  app_.add_flag("--progress", common_.progress, "Show progress off a terminal too")->group(group);
-  app_.add_flag("-v,--verbose", common_.verbose, "Say more")->group(group);
-  app_.add_flag("-q,--quiet", common_.quiet, "Say nothing but errors")->group(group);
+  options_.add_option("--seed", common_.seed, "Seed of everything random")->group(group);
+  options_.add_option("--report", common_.report, "Write a JSON report of the run")->group(group);
+  options_.add_flag("--no-clobber", common_.no_clobber, "Fail when the output exists")
+      ->group(group);
+  options_.add_flag("--progress", common_.progress, "Show progress off a terminal too")
+      ->group(group);
+  options_.add_flag("-v,--verbose", common_.verbose, "Say more")->group(group);
+  options_.add_flag("-q,--quiet", common_.quiet, "Say nothing but errors")->group(group);
 }
+
+Tool::~Tool() = default;
 
 void Tool::add_component(const std::string& name, const std::function<std::string()>& describe) {
   components_.emplace_back(name, describe);
@@ -111,14 +98,14 @@ void Tool::add_component(const std::string& name, const std::function<std::strin
 std::string Tool::version() const {
   std::string text =
       fmt::format("{} {} ({})", name_, PRTKIT_VERSION, simd_level_name(simd_level()));
-  if (app_.count("--verbose") == 0) return text;
+  if (app_->count("--verbose") == 0) return text;
   for (const auto& [name, describe] : components_)
     text += fmt::format("\n{}: {}", name, describe());
   return text;
 }
 
 void Tool::record_options(Report& report) const {
-  for (const CLI::Option* option : app_.get_options()) {
+  for (const CLI::Option* option : app_->get_options()) {
     const std::string& name = option->get_name(false, false);
     if (option->count() == 0 || name == "--help" || name == "--version") continue;
     const auto values = option->as<std::vector<std::string>>();
@@ -127,7 +114,7 @@ void Tool::record_options(Report& report) const {
 }
 
 void Tool::check_values() const {
-  for (const CLI::Option* option : app_.get_options()) {
+  for (const CLI::Option* option : app_->get_options()) {
     const CLI::results_t& values = option->results();
     const auto count = static_cast<std::size_t>(option->get_items_expected_min());
     if (std::ranges::count(values, "") > 0) {
@@ -157,10 +144,10 @@ int Tool::execute(const std::function<void(Report&)>& work) {
 
 int Tool::run(int argc, char** argv, const std::function<void(Report&)>& work) {
   try {
-    app_.parse(argc, argv);
+    app_->parse(argc, argv);
     return execute(work);
   } catch (const CLI::ParseError& error) {
-    const bool asked = app_.exit(error) == 0;  // --help, --version
+    const bool asked = app_->exit(error) == 0;  // --help, --version
     return !asked ? kWrongUsage : std::cout.flush() ? 0 : kFailed;
   } catch (const Error& error) {
     fmt::print(stderr, "{}: {}\n", name_, error.what());

@@ -2,13 +2,14 @@
 // help, version, exit statuses, the run report.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "core/report.h"
 
 namespace prt::cli {
@@ -24,16 +25,13 @@ struct CommonOptions {
   std::filesystem::path report;  ///< empty: none
 };
 
-/// Checks of an option's number; those of CLI11 name the largest number of all in their message.
-CLI::Validator at_least_zero();
-CLI::Validator above_zero();
-
 class Tool {
  public:
   /// `example` is one real command, shown at the end of --help.
   Tool(std::string name, std::string description, std::string example);
+  ~Tool();
 
-  CLI::App& app() { return app_; }
+  Options& options() { return options_; }
   const CommonOptions& common() const { return common_; }
 
   /// Something whose version or kind `--version -v` tells: "BLAS", asked only then.
@@ -50,7 +48,8 @@ class Tool {
   void record_options(Report& report) const;
 
   std::string name_;
-  CLI::App app_;
+  std::unique_ptr<CLI::App> app_;
+  Options options_;
   CommonOptions common_;
   std::vector<std::pair<std::string, std::function<std::string()>>> components_;
 };

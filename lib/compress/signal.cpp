@@ -13,7 +13,7 @@ namespace prt::compress {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kPointBlock = 1024;
 
 }  // namespace
 
@@ -72,10 +72,10 @@ double Errors::relative_max() const {
 Errors measure(const cpca::Encoding& encoding, std::span<const float> signal,
                const Weights& weights) {
   const auto n = static_cast<std::size_t>(encoding.dimension);
-  std::vector<Errors> blocks(block_count(encoding.point_count, kBlock));
-  parallel_for(encoding.point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<Errors> blocks(block_count(encoding.point_count, kPointBlock));
+  parallel_for(encoding.point_count, kPointBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<float> row(n);
-    Errors& block = blocks[begin / kBlock];
+    Errors& block = blocks[begin / kPointBlock];
     for (std::size_t p = begin; p < end; ++p) {
       cpca::reconstruct(encoding, p, row);
       const double point_weight = weights.points.empty() ? 1.0 : double{weights.points[p]};

@@ -11,6 +11,8 @@
 
 namespace prt::gltf {
 
+constexpr const char* kTransferExtension = "PRTKIT_precomputed_transfer";
+
 /// What the extension has room for.
 constexpr int kMaxBandCount = 16, kMaxRowCount = 256, kMaxClusterCount = 65536,
               kMaxComponentCount = 256;

@@ -12,6 +12,7 @@
 
 #include "gltf/document.h"
 #include "gltf/json.h"
+#include "gltf/precomputed_transfer.h"
 
 namespace prt::gltf {
 
@@ -32,7 +33,6 @@ struct Document::State {
 
 using State = Document::State;
 
-constexpr const char* kTransferExtension = "PRTKIT_precomputed_transfer";
 /// The extension in the root or in a primitive; null: none.
 const Json* find_transfer(const Json& object);
 /// Takes it out, everywhere, with its accessors where they are the last of the document and nothing

@@ -8,7 +8,7 @@ namespace prt::image {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double luminance(const float* rgb) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
 
@@ -25,7 +25,7 @@ double smoothed_luminance(const Image& map, int x, int y) {
   return sum / 9;
 }
 
-double row_edge_height(int row, int row_count) { return std::cos(kPi * row / row_count); }
+double row_edge_height(int row, int row_count) { return std::cos(pi * row / row_count); }
 
 // Makes a distribution of the running sums: 0 … 1. A sum of 0 becomes uniform.
 void normalise(double* cdf, int count) {
@@ -73,7 +73,7 @@ EnvironmentSampler::Sample EnvironmentSampler::sample(float u0, float u1) const 
   const double top = row_edge_height(y, height_), bottom = row_edge_height(y + 1, height_);
   const double height = top + row_fraction * (bottom - top);
   const double radius = std::sqrt(std::max(0.0, 1 - height * height));
-  const double longitude = kPi * (1 - 2 * (x + column_fraction) / width_);
+  const double longitude = pi * (1 - 2 * (x + column_fraction) / width_);
   return {Vec3(static_cast<float>(std::sin(longitude) * radius), static_cast<float>(height),
                static_cast<float>(std::cos(longitude) * radius)),
           texel_pdf(x, y)};
@@ -90,7 +90,7 @@ float EnvironmentSampler::texel_pdf(int x, int y) const {
   const double* rows = row_cdf_.data() + y;
   const double* cells = columns(y);
   const double solid_angle =
-      2 * kPi / width_ * (row_edge_height(y, height_) - row_edge_height(y + 1, height_));
+      2 * pi / width_ * (row_edge_height(y, height_) - row_edge_height(y + 1, height_));
   return static_cast<float>((rows[1] - rows[0]) * (cells[x + 1] - cells[x]) / solid_angle);
 }
 

@@ -35,7 +35,7 @@ bool counts(const ComparisonInput& input, int x, int y) {
          (!input.mask || input.mask->at(x, y)[0] > 0.5f);
 }
 
-struct Sums {
+struct PixelSums {
   std::size_t pixel_count = 0;
   double square = 0.0, reference_square = 0.0, noise_square = 0.0, value = 0.0, reference = 0.0;
   double worst = -1.0;
@@ -43,7 +43,7 @@ struct Sums {
   std::vector<double> differences;
 };
 
-void add_pixel(const ComparisonInput& input, int x, int y, Sums& sums, float& difference) {
+void add_pixel(const ComparisonInput& input, int x, int y, PixelSums& sums, float& difference) {
   const float* a = input.image.at(x, y);
   const float* b = input.reference.at(x, y);
   double square = 0.0;
@@ -68,7 +68,7 @@ void add_pixel(const ComparisonInput& input, int x, int y, Sums& sums, float& di
   }
 }
 
-Json to_json(const Sums& sums, bool with_noise) {
+Json to_json(const PixelSums& sums, bool with_noise) {
   const double value_count = 3.0 * static_cast<double>(sums.pixel_count);
   const auto relative = [&](double square) {
     return sums.reference_square > 0.0 ? std::sqrt(square / sums.reference_square) : 0.0;
@@ -99,7 +99,7 @@ Comparison compare(const ComparisonInput& input) {
   if (input.noise) check_size("noise image", *input.noise, input.reference, 3);
   Comparison result;
   result.difference = image::Image(input.reference.width, input.reference.height, 1);
-  Sums sums;
+  PixelSums sums;
   for (int y = 0; y < input.reference.height; ++y) {
     for (int x = 0; x < input.reference.width; ++x) {
       float& difference = *result.difference.at(x, y);

@@ -15,7 +15,7 @@ namespace prt::inspect {
 namespace {
 
 // Sums of one primitive, or of all.
-struct Sums {
+struct VertexSums {
   double squared_error = 0.0, energy = 0.0;
   std::size_t worst_vertex = 0;
   double worst = -1.0;
@@ -83,11 +83,11 @@ CompressionError compression_error(const std::filesystem::path& model_path,
   const double scale =
       total_energy > 0.0 ? std::sqrt(static_cast<double>(energy.size()) / total_energy) : 0.0;
 
-  Sums total;
+  VertexSums total;
   Json primitives = Json::array();
   const std::vector<std::size_t> offsets = scene.vertex_offsets();
   for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-    Sums sums;
+    VertexSums sums;
     for (std::size_t v = offsets[p]; v < offsets[p + 1]; ++v) {
       sums.add(v - offsets[p], errors[v], energy[v], scale);
       total.add(v, errors[v], energy[v], scale);

@@ -17,8 +17,6 @@ Vec3 coefficient(const sh::Light& light, int index) {
   return {light.coefficients[0][i], light.coefficients[1][i], light.coefficients[2][i]};
 }
 
-Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 void inspect_light(const std::filesystem::path& path, Inspection& inspection) {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "gltf/document.h"
+#include "gltf/precomputed_transfer.h"
 #include "inspect/inspection.h"
 #include "inspect/schema.h"
 #include "inspect/statistics.h"
@@ -14,9 +15,7 @@ namespace prt::inspect {
 
 namespace {
 
-const char* const kExtension = "PRTKIT_precomputed_transfer";
-
-Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+using gltf::kTransferExtension;
 
 Json describe(const mesh::Scene& scene, const mesh::Primitive& primitive) {
   const mesh::TriangleMesh& mesh = primitive.mesh;
@@ -101,13 +100,13 @@ void check_encoding(const gltf::PrecomputedTransfer& transfer, const mesh::Scene
                     Inspection& inspection) {
   const cpca::Encoding& encoding = transfer.encoding;
   if (encoding.point_count != scene.vertex_count()) {
-    inspection.error(kExtension, fmt::format("holds {} points, the scene has {} vertices",
-                                             encoding.point_count, scene.vertex_count()));
+    inspection.error(kTransferExtension, fmt::format("holds {} points, the scene has {} vertices",
+                                                     encoding.point_count, scene.vertex_count()));
   }
   const std::string hash = mesh::mesh_hash(scene);
   if (!transfer.mesh_hash.empty() && transfer.mesh_hash != hash) {
     inspection.error(
-        kExtension,
+        kTransferExtension,
         fmt::format("was baked for another mesh or other colours: hash {}, the file's is {}",
                     transfer.mesh_hash, hash));
   }
@@ -164,7 +163,7 @@ void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
 
 void inspect_model(const std::filesystem::path& path, Inspection& inspection) {
   for (const std::string& violation : schema_violations(path)) {
-    inspection.error(kExtension, violation);
+    inspection.error(kTransferExtension, violation);
   }
   const gltf::Document document = gltf::Document::load(path);
   const mesh::Scene scene = document.scene();

@@ -13,16 +13,18 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "gltf/precomputed_transfer.h"
 #include "inspect/schema_texts.h"
 
 namespace prt::inspect {
 
 namespace {
 
+using gltf::kTransferExtension;
+
 using Plain = nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
 
-constexpr const char* kExtension = "PRTKIT_precomputed_transfer";
 constexpr const char* kRootSchema = "glTF.PRTKIT_precomputed_transfer.schema.json";
 constexpr const char* kPrimitiveSchema = "mesh.primitive.PRTKIT_precomputed_transfer.schema.json";
 
@@ -79,7 +81,7 @@ Plain read_json(const std::filesystem::path& path) {
 const Plain* extension_of(const Plain& object) {
   const auto extensions = object.find("extensions");
   if (extensions == object.end() || !extensions->is_object()) return nullptr;
-  const auto extension = extensions->find(kExtension);
+  const auto extension = extensions->find(kTransferExtension);
   return extension == extensions->end() ? nullptr : &*extension;
 }
 
@@ -97,7 +99,7 @@ std::vector<std::string> schema_violations(const std::filesystem::path& path) {
   const Plain json = read_json(path);
   std::vector<std::string> violations;
   if (const Plain* extension = extension_of(json)) {
-    validate(kRootSchema, *extension, kExtension, violations);
+    validate(kRootSchema, *extension, kTransferExtension, violations);
   }
   const Plain& meshes = array_of(json, "meshes");
   for (std::size_t m = 0; m < meshes.size(); ++m) {

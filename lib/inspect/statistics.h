@@ -1,12 +1,16 @@
-// Figures that describe many values.
+// Figures that describe many values, and vectors, as JSON.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "core/vec.h"
 #include "inspect/inspection.h"
 
 namespace prt::inspect {
+
+/// [x, y, z]
+inline Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 /// {"min", "max", "mean"} of finite values; empty object when there are none.
 Json range_of(std::span<const float> values);

@@ -12,11 +12,11 @@ namespace prt::sh {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int kGridHeight = 90;
 
 double window_factor(Window window, int l, int band_count) {
-  const double x = kPi * l / band_count;
+  const double x = pi * l / band_count;
   switch (window) {
     case Window::hann:
       return (1 + std::cos(x)) / 2;
@@ -32,7 +32,7 @@ Matrix4 rotation_matrix(const Vec3& degrees) {
   const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int i = 0; i < 3; ++i) {
     Matrix4 turn;
-    turn.setAxisAngle(axes[i], static_cast<float>(double{degrees[i]} * kPi / 180));
+    turn.setAxisAngle(axes[i], static_cast<float>(double{degrees[i]} * pi / 180));
     matrix = matrix * turn;
   }
   return matrix;
@@ -92,10 +92,10 @@ LightStatistics statistics_of(const Light& light) {
   const int width = 2 * kGridHeight;
   double negative = 0, minimum = INFINITY, maximum = -INFINITY;
   for (int y = 0; y < kGridHeight; ++y) {
-    const double latitude = kPi * (0.5 - (y + 0.5) / kGridHeight);
+    const double latitude = pi * (0.5 - (y + 0.5) / kGridHeight);
     const double solid_angle = texel_solid_angle(width, kGridHeight, y);
     for (int x = 0; x < width; ++x) {
-      const double longitude = 2 * kPi * (x + 0.5) / width;
+      const double longitude = 2 * pi * (x + 0.5) / width;
       const Vec3 radiance =
           light_radiance(light, Vec3(static_cast<float>(std::sin(longitude) * std::cos(latitude)),
                                      static_cast<float>(std::sin(latitude)),
@@ -108,7 +108,7 @@ LightStatistics statistics_of(const Light& light) {
   }
   statistics.minimum_luminance = minimum;
   statistics.maximum_luminance = maximum;
-  statistics.negative_fraction = negative / (4 * kPi);
+  statistics.negative_fraction = negative / (4 * pi);
   return statistics;
 }
 

@@ -15,7 +15,7 @@ namespace prt::sh {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t kRowsPerBlock = 8;
 
 // Integrals of cos(m phi), m = 0 … bands-1, then sin(m phi), m = 1 … bands-1, over each column;
@@ -23,12 +23,12 @@ constexpr std::size_t kRowsPerBlock = 8;
 std::vector<double> longitude_integrals(int band_count, int width) {
   std::vector<double> table;
   table.reserve(static_cast<std::size_t>(2 * band_count - 1) * static_cast<std::size_t>(width));
-  const double half_step = kPi / width;
+  const double half_step = pi / width;
   for (int k = 0; k < 2 * band_count - 1; ++k) {
     const int m = k < band_count ? k : k - band_count + 1;
     const double weight = m == 0 ? 2 * half_step : 2 * std::sin(m * half_step) / m;
     for (int i = 0; i < width; ++i) {
-      const double centre = m * (kPi - (2 * i + 1) * half_step);
+      const double centre = m * (pi - (2 * i + 1) * half_step);
       table.push_back(weight * (k < band_count ? std::cos(centre) : std::sin(centre)));
     }
   }
@@ -46,7 +46,7 @@ class LatitudeIntegrals {
   void row(int y, std::vector<double>& sums) const {
     std::vector<double> values(sums.size());
     std::fill(sums.begin(), sums.end(), 0.0);
-    const double size = kPi / height_ / piece_count_;
+    const double size = pi / height_ / piece_count_;
     for (int piece = 0; piece < piece_count_; ++piece) {
       for (std::size_t k = 0; k < rule_.nodes.size(); ++k) {
         const double theta =
@@ -136,7 +136,7 @@ Light project_environment(int band_count, int width, int height, const float* rg
 }
 
 double texel_solid_angle(int width, int height, int row) {
-  return 4 * kPi / width * std::sin(kPi * (row + 0.5) / height) * std::sin(kPi / (2.0 * height));
+  return 4 * pi / width * std::sin(pi * (row + 0.5) / height) * std::sin(pi / (2.0 * height));
 }
 
 std::array<double, 3> environment_energy(int width, int height, const float* rgb) {

@@ -9,7 +9,7 @@
 namespace prt::sh {
 
 namespace {
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 }
 
 // In the Legendre polynomials, 2 pi times the integral of z P_l(z) over [0, 1] is pi for l = 0,
@@ -21,10 +21,10 @@ std::vector<double> cosine_lobe(int band_count) {
   for (int l = 0; l < band_count; ++l) {
     if (l >= 2 && l % 2 == 0) binomial *= (l - 1.0) / l;
     const double sign = l % 4 == 0 ? -1 : 1;
-    const double integral = l == 1       ? 2 * kPi / 3
+    const double integral = l == 1       ? 2 * pi / 3
                             : l % 2 == 1 ? 0
-                                         : sign * 2 * kPi / ((l + 2) * (l - 1)) * binomial;
-    zonal[static_cast<std::size_t>(l)] = std::sqrt((2 * l + 1) / (4 * kPi)) * integral;
+                                         : sign * 2 * pi / ((l + 2) * (l - 1)) * binomial;
+    zonal[static_cast<std::size_t>(l)] = std::sqrt((2 * l + 1) / (4 * pi)) * integral;
   }
   return zonal;
 }
@@ -42,7 +42,7 @@ std::vector<double> disk_lobe(int band_count, double radius) {
       before = p;
       p = next;
     }
-    zonal[static_cast<std::size_t>(l)] = std::sqrt((2 * l + 1) * kPi) * integral;
+    zonal[static_cast<std::size_t>(l)] = std::sqrt((2 * l + 1) * pi) * integral;
   }
   return zonal;
 }
@@ -51,7 +51,7 @@ void turn_lobe(std::span<const double> zonal, const Vec3& axis, std::span<double
   const int band_count = static_cast<int>(zonal.size());
   evaluate(band_count, axis.x, axis.y, axis.z, coefficients);
   for (int l = 0; l < band_count; ++l) {
-    const double factor = std::sqrt(4 * kPi / (2 * l + 1)) * zonal[static_cast<std::size_t>(l)];
+    const double factor = std::sqrt(4 * pi / (2 * l + 1)) * zonal[static_cast<std::size_t>(l)];
     for (int m = -l; m <= l; ++m) {
       coefficients[static_cast<std::size_t>(coefficient_index(l, m))] *= factor;
     }

@@ -10,7 +10,7 @@
 namespace prt::brdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<MetallicRoughness> materials() {
   MetallicRoughness metal{.base_color = {0.9, 0.6, 0.2}, .roughness = 0.4};
@@ -43,7 +43,7 @@ Colour albedo(const Brdf& brdf, const Direction& eye) {
 Colour appendix_b(const MetallicRoughness& material, const Direction& l, const Direction& v) {
   const Direction h = (l + v).normalized();
   const double s = std::pow(1 - (v ^ h), 5), a2 = std::pow(material.roughness, 4);
-  const double f = h.z * h.z * (a2 - 1) + 1, d = a2 / (kPi * f * f);
+  const double f = h.z * h.z * (a2 - 1) + 1, d = a2 / (pi * f * f);
   const auto g1 = [&](double z) { return 2 * z / (z + std::sqrt(a2 + (1 - a2) * z * z)); };
   const double specular_brdf = d * g1(l.z) * g1(v.z) / (4 * l.z * v.z);
   const double f0 = std::pow((1 - material.ior) / (1 + material.ior), 2);
@@ -54,7 +54,7 @@ Colour appendix_b(const MetallicRoughness& material, const Direction& l, const D
     fr[c] = f0_c + (1 - f0_c) * s;
     fr_max = std::max(fr_max, fr[c]);
   }
-  const Colour dielectric = material.base_color / kPi * (1 - material.specular * fr_max) +
+  const Colour dielectric = material.base_color / pi * (1 - material.specular * fr_max) +
                             fr * (material.specular * specular_brdf);
   const Colour metal =
       (material.base_color + (Colour(1) - material.base_color) * s) * specular_brdf;
@@ -85,7 +85,7 @@ TEST(Brdf, AnisotropyIsTheExtensions) {
     const Direction l = random_upper(random), v = random_upper(random), h = (l + v).normalized();
     const double a2 = at * ab;
     const Direction f(ab * (t ^ h), at * (b ^ h), a2 * h.z);
-    const double w2 = a2 / f.length2(), d = a2 * w2 * w2 / kPi;
+    const double w2 = a2 / f.length2(), d = a2 * w2 * w2 / pi;
     const double ggx_v = l.z * Direction(at * (t ^ v), ab * (b ^ v), v.z).length();
     const double ggx_l = v.z * Direction(at * (t ^ l), ab * (b ^ l), l.z).length();
     const double fresnel = 0.9 + 0.1 * std::pow(1 - (v ^ h), 5);
@@ -95,7 +95,7 @@ TEST(Brdf, AnisotropyIsTheExtensions) {
 }
 
 TEST(Brdf, ExtremeMaterialsAreWellDefined) {
-  const Direction eye = from_angles(0.3, 0), mirror = from_angles(0.3, kPi);
+  const Direction eye = from_angles(0.3, 0), mirror = from_angles(0.3, pi);
   const Brdf smooth = make_brdf({.roughness = 0});
   EXPECT_TRUE(std::isfinite(evaluate(smooth, mirror, eye).x));
   EXPECT_NEAR(albedo(smooth, eye).x, 1, 1e-4);
@@ -105,7 +105,7 @@ TEST(Brdf, ExtremeMaterialsAreWellDefined) {
   EXPECT_EQ(evaluate(black, mirror, eye), Colour(0));
   EXPECT_GT(pdf(black, sample(black, eye, 0.5, 0.5, 0.5), eye), 0);
   const Brdf diffuse = make_brdf({.metallic = 0, .specular = 0});
-  EXPECT_NEAR(evaluate(diffuse, mirror, eye).x, 1 / kPi, 1e-12);
+  EXPECT_NEAR(evaluate(diffuse, mirror, eye).x, 1 / pi, 1e-12);
 }
 
 TEST(Brdf, MetalsReflectNoMoreThanTheyReceive) {
@@ -113,7 +113,7 @@ TEST(Brdf, MetalsReflectNoMoreThanTheyReceive) {
     for (const bool anisotropic : {false, true}) {
       const Brdf white = make_brdf(
           {.roughness = roughness, .has_anisotropy = anisotropic, .anisotropy_strength = 0.7});
-      for (double theta = 0.05; theta < kPi / 2; theta += 0.2) {
+      for (double theta = 0.05; theta < pi / 2; theta += 0.2) {
         EXPECT_LE(albedo(white, from_angles(theta, 0.4)).x, 1 + 1e-5) << roughness;
       }
     }
@@ -158,12 +158,12 @@ TEST(Brdf, DensityIntegratesToOne) {
     const Brdf brdf = make_brdf(material);
     const double theta = 0.8;
     const Direction eye = from_angles(theta, 0.5);
-    const double phi = 0.5 + kPi;
+    const double phi = 0.5 + pi;
     std::vector<Box> sphere;
     for (const auto& [low, high] :
-         {std::pair(0.0, theta), {theta, kPi / 2}, {kPi / 2, kPi - theta}, {kPi - theta, kPi}}) {
-      sphere.push_back({low, high, phi - kPi, phi});
-      sphere.push_back({low, high, phi, phi + kPi});
+         {std::pair(0.0, theta), {theta, pi / 2}, {pi / 2, pi - theta}, {pi - theta, pi}}) {
+      sphere.push_back({low, high, phi - pi, phi});
+      sphere.push_back({low, high, phi, phi + pi});
     }
     const Integrand density = [&](std::span<const Point> points, std::span<double> values) {
       for (std::size_t i = 0; i < points.size(); ++i) {

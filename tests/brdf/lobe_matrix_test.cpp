@@ -12,7 +12,7 @@
 namespace prt::brdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<int> all_functions(int band_count) {
   return sh::hemisphere_functions(sh::coefficient_count(band_count));
@@ -30,10 +30,10 @@ std::vector<Node> hemisphere_nodes(int polar_count, int azimuth_count) {
   const sh::GaussLegendre rule(polar_count);
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-    const double theta = (rule.nodes[i] + 1) * kPi / 4;
+    const double theta = (rule.nodes[i] + 1) * pi / 4;
     for (int j = 0; j < azimuth_count; ++j) {
-      nodes.push_back({from_angles(theta, 2 * kPi * (j + 0.5) / azimuth_count),
-                       rule.weights[i] * kPi / 4 * std::sin(theta) * 2 * kPi / azimuth_count});
+      nodes.push_back({from_angles(theta, 2 * pi * (j + 0.5) / azimuth_count),
+                       rule.weights[i] * pi / 4 * std::sin(theta) * 2 * pi / azimuth_count});
     }
   }
   return nodes;
@@ -55,14 +55,14 @@ TEST(LobeMatrix, LambertIsTheClampedCosine) {
   for (int i = 0; i < 16; ++i) {
     for (int l = 0; l < 5; ++l) {
       for (int m = -l; m <= l; ++m) {
-        const double incident = m == 0 ? lobe[static_cast<std::size_t>(l)] / kPi : 0;
-        const double expected = rows[static_cast<std::size_t>(i)] * std::sqrt(4 * kPi) * incident;
+        const double incident = m == 0 ? lobe[static_cast<std::size_t>(l)] / pi : 0;
+        const double expected = rows[static_cast<std::size_t>(i)] * std::sqrt(4 * pi) * incident;
         const auto j = static_cast<std::size_t>(sh::coefficient_index(l, m));
         EXPECT_NEAR(matrix.values[static_cast<std::size_t>(i) * 25 + j], expected, 1e-7);
       }
     }
   }
-  EXPECT_NEAR(matrix.kernel_energy, 2 * kPi * (2 * kPi / 3) / (kPi * kPi), 1e-6);
+  EXPECT_NEAR(matrix.kernel_energy, 2 * pi * (2 * pi / 3) / (pi * pi), 1e-6);
 }
 
 // By the addition theorem, cos^N of the angle between the eye and the mirrored light is a sum over
@@ -75,7 +75,7 @@ TEST(LobeMatrix, PhongFollowsFromItsZonalCoefficients) {
   for (std::size_t n = 0; n < rule.nodes.size(); ++n) {
     const double t = (rule.nodes[n] + 1) / 2;
     for (int l = 0; l < kBands; ++l) {
-      zonal[static_cast<std::size_t>(l)] += kPi * rule.weights[n] * std::pow(t, kExponent) *
+      zonal[static_cast<std::size_t>(l)] += pi * rule.weights[n] * std::pow(t, kExponent) *
                                             std::legendre(static_cast<unsigned>(l), t);
     }
   }
@@ -100,7 +100,7 @@ TEST(LobeMatrix, PhongFollowsFromItsZonalCoefficients) {
         expected += (order_of(many[k]) % 2 ? -1 : 1) * zonal[static_cast<std::size_t>(l)] *
                     rows[i * many.size() + k] * columns[k * 36 + j];
       }
-      expected *= (kExponent + 2) / (2 * kPi);
+      expected *= (kExponent + 2) / (2 * pi);
       ASSERT_NEAR(matrix.values[i * 36 + j], expected, 1e-6) << i << " " << j;
     }
   }
@@ -150,7 +150,7 @@ TEST(LobeMatrix, MatchesMonteCarlo) {
       const Direction light = lobe->sample(eye, u1, u2);
       const double value = lobe->evaluate(light, eye);
       if (value == 0) continue;
-      const double weight = 2 * kPi * value * light.z / lobe->pdf(light, eye);
+      const double weight = 2 * pi * value * light.z / lobe->pdf(light, eye);
       const auto rows = basis_at(4, eye), columns = basis_at(3, light);
       for (std::size_t i = 0; i < 16; ++i) {
         for (std::size_t j = 0; j < 9; ++j) {

@@ -11,7 +11,7 @@
 namespace prt::brdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 const Direction kEyes[] = {from_angles(0, 0), from_angles(0.4, 1), from_angles(1.0, 2.5),
                            from_angles(1.4, -0.6)};
@@ -64,8 +64,8 @@ TEST(Lobe, HasTheSymmetriesPromised) {
 
 TEST(Lobe, ReflectsNoMoreThanItReceives) {
   for (const auto& lobe : all_lobes()) {
-    for (double theta = 0; theta < kPi / 2; theta += 0.13) {
-      for (double phi : {0.0, 0.7, kPi / 2}) {
+    for (double theta = 0; theta < pi / 2; theta += 0.13) {
+      for (double phi : {0.0, 0.7, pi / 2}) {
         const double albedo = directional_albedo(*lobe, from_angles(theta, phi), 1e-5);
         EXPECT_LE(albedo, 1 + 1e-5) << lobe->key() << " at " << theta;
         EXPECT_GT(albedo, 0) << lobe->key() << " at " << theta;
@@ -113,21 +113,21 @@ TEST(Lobe, FresnelPartsAddUpToTheWhole) {
 // Values worked out by hand from the published formulas.
 TEST(Lobe, MatchesTheFormulasAtAPoint) {
   const Direction eye(0.6, 0, 0.8), light(-0.6, 0, 0.8);  // h is the normal, eye·h = 0.8
-  EXPECT_NEAR(phong(10)->evaluate(light, eye), 12 / (2 * kPi), 1e-12);
+  EXPECT_NEAR(phong(10)->evaluate(light, eye), 12 / (2 * pi), 1e-12);
   const double a2 = 0.25 * 0.25;
   const double g1 = 2 * 0.8 / (0.8 + std::sqrt(a2 + (1 - a2) * 0.64));
-  EXPECT_NEAR(ggx(0.25, 0.25)->evaluate(light, eye), g1 * g1 / (kPi * a2) / (4 * 0.64), 1e-12);
+  EXPECT_NEAR(ggx(0.25, 0.25)->evaluate(light, eye), g1 * g1 / (pi * a2) / (4 * 0.64), 1e-12);
   const double length = std::hypot(0.5 * 0.6, 0.8);
   EXPECT_NEAR(ggx(0.5, 0.25, Fresnel::one, Masking::height_correlated)->evaluate(light, eye),
-              1 / (kPi * 0.125) * 0.5 / (2 * 0.8 * length), 1e-12);
-  EXPECT_NEAR(ward(0.2, 0.4)->evaluate(light, eye), 1 / (4 * kPi * 0.08 * 0.64), 1e-12);
-  EXPECT_NEAR(ashikhmin_shirley(8, 3)->evaluate(light, eye), 6 / (8 * kPi * 0.64), 1e-12);
+              1 / (pi * 0.125) * 0.5 / (2 * 0.8 * length), 1e-12);
+  EXPECT_NEAR(ward(0.2, 0.4)->evaluate(light, eye), 1 / (4 * pi * 0.08 * 0.64), 1e-12);
+  EXPECT_NEAR(ashikhmin_shirley(8, 3)->evaluate(light, eye), 6 / (8 * pi * 0.64), 1e-12);
   // Off the mirror direction: h = (0.6, 0, 0.8) for light along the eye.
   EXPECT_NEAR(ward(0.5, 0.4)->evaluate(eye, eye),
-              std::exp(-std::pow(0.75 / 0.5, 2)) / (4 * kPi * 0.2 * std::pow(0.8, 4)), 1e-12);
-  const double d = 1 / (kPi * 0.125 * std::pow(0.36 / 0.25 + 0.64, 2));
+              std::exp(-std::pow(0.75 / 0.5, 2)) / (4 * pi * 0.2 * std::pow(0.8, 4)), 1e-12);
+  const double d = 1 / (pi * 0.125 * std::pow(0.36 / 0.25 + 0.64, 2));
   EXPECT_NEAR(ggx(0.5, 0.25)->evaluate(eye, eye), d / std::pow(0.8 + length, 2), 1e-12);
-  EXPECT_NEAR(ashikhmin_shirley(8, 3)->evaluate(eye, eye), 6 / (8 * kPi) * std::pow(0.8, 8) / 0.8,
+  EXPECT_NEAR(ashikhmin_shirley(8, 3)->evaluate(eye, eye), 6 / (8 * pi) * std::pow(0.8, 8) / 0.8,
               1e-12);
 }
 
@@ -138,10 +138,10 @@ TEST(Lobe, DensityIntegratesToOneOverTheSphere) {
       // Cut at the eye's angle and where half vectors end.
       std::vector<Box> sphere;
       for (const auto& [low, high] :
-           {std::pair(0.0, theta), {theta, kPi - theta}, {kPi - theta, kPi}}) {
+           {std::pair(0.0, theta), {theta, pi - theta}, {pi - theta, pi}}) {
         if (low == high) continue;
-        sphere.push_back({low, high, phi - kPi, phi});
-        sphere.push_back({low, high, phi, phi + kPi});
+        sphere.push_back({low, high, phi - pi, phi});
+        sphere.push_back({low, high, phi, phi + pi});
       }
       const Integrand density = [&](std::span<const Point> points, std::span<double> values) {
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -166,16 +166,16 @@ TEST(Lobe, SamplesHaveTheirDensity) {
         const double u1 = random.uniform(), u2 = random.uniform();
         const Direction w = lobe->sample(eye, u1, u2);
         ASSERT_NEAR(w.length(), 1, 1e-9);
-        const double phi = std::atan2(w.y, w.x) + kPi;
+        const double phi = std::atan2(w.y, w.x) + pi;
         const int row = std::min(kRows - 1, static_cast<int>((1 - w.z) / 2 * kRows));
-        const int column = std::min(kColumns - 1, static_cast<int>(phi / (2 * kPi) * kColumns));
+        const int column = std::min(kColumns - 1, static_cast<int>(phi / (2 * pi) * kColumns));
         counts[static_cast<std::size_t>(row * kColumns + column)] += 1;
       }
       double chi2 = 0, pooled_expected = 0, pooled_count = 0;
       int cell_count = 0;
       for (int cell = 0; cell < kRows * kColumns; ++cell) {
-        const double z = 1 - 2.0 * (cell / kColumns) / kRows, width = 2 * kPi / kColumns;
-        const double phi = (cell % kColumns) * width - kPi;
+        const double z = 1 - 2.0 * (cell / kColumns) / kRows, width = 2 * pi / kColumns;
+        const double phi = (cell % kColumns) * width - pi;
         const Box box{z - 2.0 / kRows, z, phi, phi + width};
         const Integrand density = [&](std::span<const Point> points, std::span<double> values) {
           for (std::size_t i = 0; i < points.size(); ++i) {

@@ -12,10 +12,6 @@
 namespace prt::cpca {
 namespace {
 
-double error_of(const Encoded& encoded, const std::vector<float>& signal) {
-  return summarize(point_errors(encoded.encoding, signal), signal).squared_error;
-}
-
 std::size_t weight_count(const Encoding& encoding) {
   std::size_t count = 0;
   for (const std::uint32_t k : encoding.cluster_of_point) count += encoding.component_counts[k];

@@ -14,10 +14,6 @@
 namespace prt::cpca {
 namespace {
 
-double error_of(const Encoded& encoded, const std::vector<float>& signal) {
-  return summarize(point_errors(encoded.encoding, signal), signal).squared_error;
-}
-
 /// Errors are what is left of squares in single precision.
 constexpr double kRounding = 1e-5;
 

@@ -8,8 +8,13 @@
 
 #include "core/random.h"
 #include "cpca/encoder.h"
+#include "cpca/figures.h"
 
 namespace prt::cpca {
+
+inline double error_of(const Encoded& encoded, const std::vector<float>& signal) {
+  return summarize(point_errors(encoded.encoding, signal), signal).squared_error;
+}
 
 inline std::vector<float> random_values(std::size_t count, std::uint64_t seed) {
   Pcg32 random(seed);

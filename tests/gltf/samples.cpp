@@ -1,5 +1,7 @@
 #include "gltf/samples.h"
 
+#include <span>
+
 namespace prt::gltf::samples {
 
 namespace {
@@ -83,6 +85,11 @@ nlohmann::ordered_json triangle_json() {
        "sparse": {"count": 3, "indices": {"bufferView": 1, "componentType": 5123},
                   "values": {"bufferView": 0}}}]
   })");
+}
+
+Document parse(const nlohmann::ordered_json& json) {
+  const std::string text = json.dump();
+  return Document::parse(std::as_bytes(std::span(text)), "a.gltf");
 }
 
 }  // namespace prt::gltf::samples

@@ -21,4 +21,7 @@ PrecomputedTransfer transfer(std::size_t vertex_count, int cluster_count = 3,
 /// be broken in one place.
 nlohmann::ordered_json triangle_json();
 
+/// The document of a file "a.gltf" that holds it.
+Document parse(const nlohmann::ordered_json& json);
+
 }  // namespace prt::gltf::samples

@@ -9,7 +9,7 @@
 namespace prt::sh {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Light, ConstantHasItsRadianceEverywhere) {
   Pcg32 random(1);
@@ -23,7 +23,7 @@ TEST(Light, ConstantHasItsRadianceEverywhere) {
 }
 
 TEST(Light, FullDiskIsConstant) {
-  const Light disk = disk_light(8, Vec3(1, 2, 3).normalized(), static_cast<float>(kPi), {1, 1, 1});
+  const Light disk = disk_light(8, Vec3(1, 2, 3).normalized(), static_cast<float>(pi), {1, 1, 1});
   const Light constant = constant_light(8, {1, 1, 1});
   for (std::size_t i = 0; i < 64; ++i) {
     EXPECT_NEAR(disk.coefficients[0][i], constant.coefficients[0][i], 2e-6f) << i;
@@ -32,7 +32,7 @@ TEST(Light, FullDiskIsConstant) {
 
 TEST(Light, SmallDiskNearsADirectionalLightOfEqualIrradiance) {
   const float radius = 0.00465f;  // the sun's
-  const float irradiance = static_cast<float>(kPi) * std::pow(std::sin(radius), 2.0f);
+  const float irradiance = static_cast<float>(pi) * std::pow(std::sin(radius), 2.0f);
   const Vec3 direction = Vec3(1, 2, -3).normalized();
   const Light disk = disk_light(6, direction, radius, Vec3(1 / irradiance));
   const Light directional = directional_light(6, direction, Vec3(1));
@@ -48,7 +48,7 @@ TEST(Light, DiskPaintedIntoAMapProjectsToTheClosedForm) {
   std::vector<float> map(3 * width * height);
   for (int i = 0; i < 3 * width * rows; ++i) map[static_cast<std::size_t>(i)] = 2;
   const Light projected = project_environment(band_count, width, height, map.data());
-  const auto radius = static_cast<float>(kPi * rows / height);
+  const auto radius = static_cast<float>(pi * rows / height);
   const Light disk = disk_light(band_count, {0, 1, 0}, radius, {2, 2, 2});
   for (std::size_t i = 0; i < 100; ++i) {
     EXPECT_NEAR(projected.coefficients[2][i], disk.coefficients[2][i], 1e-6f) << i;
@@ -65,7 +65,7 @@ TEST(Light, CosineLobeIsItsProjection) {
     evaluate(12, std::sqrt(1 - z * z), 0.0, z, values);
     for (int l = 0; l < 12; ++l) {
       expected[static_cast<std::size_t>(l)] +=
-          0.5 * rule.weights[k] * 2 * kPi * z *
+          0.5 * rule.weights[k] * 2 * pi * z *
           values[static_cast<std::size_t>(coefficient_index(l, 0))];
     }
   }

@@ -10,7 +10,7 @@
 namespace prt::sh {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<float> random_map(int width, int height) {
   Pcg32 random(31);
@@ -28,11 +28,11 @@ std::vector<double> project_plainly(int band_count, int width, int height, const
     for (int x = 0; x < width; ++x) {
       const float* texel = rgb + 3 * (y * width + x);
       for (std::size_t a = 0; a < rule.nodes.size(); ++a) {
-        const double latitude = kPi * (0.5 - (y + 0.5 * (1 + rule.nodes[a])) / height);
+        const double latitude = pi * (0.5 - (y + 0.5 * (1 + rule.nodes[a])) / height);
         for (std::size_t b = 0; b < rule.nodes.size(); ++b) {
-          const double longitude = kPi * (1 - 2 * (x + 0.5 * (1 + rule.nodes[b])) / width);
-          const double weight = rule.weights[a] * rule.weights[b] / 4 * (kPi / height) *
-                                (2 * kPi / width) * std::cos(latitude);
+          const double longitude = pi * (1 - 2 * (x + 0.5 * (1 + rule.nodes[b])) / width);
+          const double weight = rule.weights[a] * rule.weights[b] / 4 * (pi / height) *
+                                (2 * pi / width) * std::cos(latitude);
           evaluate(band_count, std::sin(longitude) * std::cos(latitude), std::sin(latitude),
                    std::cos(longitude) * std::cos(latitude), values);
           for (std::size_t i = 0; i < count; ++i) {
@@ -97,14 +97,14 @@ TEST(Projection, TexelSolidAnglesSumToTheSphere) {
   for (const auto& [width, height] : {std::pair{2, 1}, {64, 32}, {1024, 512}}) {
     double sum = 0;
     for (int y = 0; y < height; ++y) sum += width * texel_solid_angle(width, height, y);
-    EXPECT_NEAR(sum, 4 * kPi, 1e-11);
+    EXPECT_NEAR(sum, 4 * pi, 1e-11);
   }
 }
 
 TEST(Projection, EnergyOfABandLimitedLightIsAllKept) {
   const std::vector<float> map(3 * 32 * 16, 2.0f);
   const std::array<double, 3> energy = environment_energy(32, 16, map.data());
-  for (double channel : energy) EXPECT_NEAR(channel, 16 * kPi, 1e-10);
+  for (double channel : energy) EXPECT_NEAR(channel, 16 * pi, 1e-10);
 }
 
 }  // namespace

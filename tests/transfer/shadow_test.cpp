@@ -9,7 +9,7 @@
 namespace prt::transfer {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Errors of 4096 Fibonacci directions, in units of irradiance / pi, of which a direction weighs
 // 4 / 4096 times its cosine. With the kink at the horizon alone 3e-5 is measured; where something
@@ -33,7 +33,7 @@ TEST(Shadow, ConvexObjectHasNoShadow) {
   std::vector<float> lobe(25);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     clamped_cosine(5, mesh.normals[v], lobe);
-    for (std::size_t i = 0; i < 25; ++i) EXPECT_NEAR(row(shadowed, v)[i], lobe[i] / kPi, 1e-6);
+    for (std::size_t i = 0; i < 25; ++i) EXPECT_NEAR(row(shadowed, v)[i], lobe[i] / pi, 1e-6);
     EXPECT_NEAR(under_constant_light(shadowed, v), 1.0, 1e-5);
   }
 }
@@ -91,20 +91,20 @@ TEST(Shadow, ScaleAndTranslationChangeNothing) {
 TEST(Shadow, FloorBeforeWallMatchesClosedForm) {
   mesh::Scene scene = scene_of(grid({0.001f, 0, 1}, {2, 0, 0}, {0, 0, -2}, 2));
   add(scene, grid({0, -1, 1e4f}, {0, 0, -2e4f}, {0, 1e4f, 0}, 1));
-  const double expected[] = {0.282095 * kPi / 2,
-                             -0.488603 * kPi / 3,
+  const double expected[] = {0.282095 * pi / 2,
+                             -0.488603 * pi / 3,
                              0.0,
                              -0.488603 * 2 / 3,
-                             1.092548 * kPi / 8,
+                             1.092548 * pi / 8,
                              0.0,
-                             -0.315392 * kPi / 8,
+                             -0.315392 * pi / 8,
                              0.0,
-                             -0.546274 * kPi / 8};
+                             -0.546274 * pi / 8};
   for (bool closed_form : {true, false}) {
     const auto signal = compute(scene, {.band_count = 3, .closed_form = closed_form});
     const std::size_t foot = 3;  // middle of the edge at the wall
     for (std::size_t i = 0; i < 9; ++i) {
-      EXPECT_NEAR(row(signal, foot)[i], expected[i] / kPi, kJumpError) << i;
+      EXPECT_NEAR(row(signal, foot)[i], expected[i] / pi, kJumpError) << i;
     }
   }
 }
@@ -114,7 +114,7 @@ TEST(Shadow, FloorBeforeWallMatchesClosedForm) {
 // rectangles side by side make the wall.
 TEST(Shadow, FiniteWallTakesItsFormFactor) {
   const double a = 1.5, b = 2.0, c = 0.75, s = std::sqrt(b * b + c * c);
-  const double factor = (std::atan(a / c) - c / s * std::atan(a / s)) / (2.0 * kPi);
+  const double factor = (std::atan(a / c) - c / s * std::atan(a / s)) / (2.0 * pi);
   mesh::Scene scene = scene_of(grid({0.75f, 0, 1}, {2, 0, 0}, {0, 0, -2}, 2));
   add(scene, grid({0, 0, 1.5f}, {0, 0, -3}, {0, 2, 0}, 1));
   for (bool closed_form : {true, false}) {

@@ -1,0 +1,175 @@
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "core/error.h"
+
+namespace prt::cli {
+
+namespace {
+
+/// CLI11's own name the largest number of all in their message.
+Validator number_check(const char* type, bool (*holds)(double), const char* expected) {
+  return std::make_shared<CLI::Validator>(
+      [holds, expected](const std::string& value) {
+        double number = 0.0;
+        const bool good = CLI::detail::lexical_cast(value, number) && holds(number);
+        return good ? std::string() : fmt::format("expected {}, found {}", expected, value);
+      },
+      type);
+}
+
+}  // namespace
+
+Validator Range(int low, int high) { return std::make_shared<CLI::Range>(low, high); }
+Validator Range(double low, double high) { return std::make_shared<CLI::Range>(low, high); }
+Validator at_least_zero() {
+  return number_check(
+      "NONNEGATIVE", [](double x) { return x >= 0.0; }, "a number from 0 up");
+}
+Validator above_zero() {
+  return number_check(
+      "POSITIVE", [](double x) { return x > 0.0; }, "a number above 0");
+}
+Validator IsMember(const std::vector<std::string>& names) {
+  return std::make_shared<CLI::IsMember>(names);
+}
+
+Option* Option::required() {
+  option_->required();
+  return this;
+}
+
+Option* Option::check(const Validator& validator) {
+  option_->check(*validator);
+  return this;
+}
+
+Option* Option::needs(const Option* other) {
+  option_->needs(other->option_);
+  return this;
+}
+
+Option* Option::excludes(const Option* other) {
+  option_->excludes(other->option_);
+  return this;
+}
+
+Option* Option::group(const std::string& headline) {
+  option_->group(headline);
+  return this;
+}
+
+Option* Option::type_name(const std::string& name) {
+  option_->type_name(name);
+  return this;
+}
+
+Option* Option::default_str(const std::string& shown) {
+  option_->default_str(shown);
+  return this;
+}
+
+Option* Option::numbers(int count) {
+  option_->delimiter(',');
+  return values(count);
+}
+
+Option* Option::repeated_numbers(int count) {
+  option_->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return numbers(count);
+}
+
+Option* Option::values(int count) {
+  option_->expected(count);
+  return this;
+}
+
+Option* Options::keep(CLI::Option* option) {
+  return options_.emplace_back(std::make_unique<Option>(option)).get();
+}
+
+template <class T>
+Option* Options::add_option(const std::string& name, T& value, const std::string& description) {
+  return keep(app_.add_option(name, value, description));
+}
+
+#define PRTKIT_OPTION_OF(...) \
+  template Option* Options::add_option(const std::string&, __VA_ARGS__&, const std::string&);
+PRTKIT_OPTION_OF(int)
+PRTKIT_OPTION_OF(unsigned int)
+PRTKIT_OPTION_OF(std::size_t)
+PRTKIT_OPTION_OF(float)
+PRTKIT_OPTION_OF(double)
+PRTKIT_OPTION_OF(std::string)
+PRTKIT_OPTION_OF(std::filesystem::path)
+PRTKIT_OPTION_OF(std::optional<int>)
+PRTKIT_OPTION_OF(std::optional<float>)
+PRTKIT_OPTION_OF(std::optional<double>)
+PRTKIT_OPTION_OF(std::optional<std::size_t>)
+PRTKIT_OPTION_OF(std::optional<std::string>)
+PRTKIT_OPTION_OF(std::vector<float>)
+PRTKIT_OPTION_OF(std::vector<std::filesystem::path>)
+#undef PRTKIT_OPTION_OF
+
+Option* Options::add_vector(const std::string& name, const std::function<void(const Vec3&)>& set,
+                            const std::string& description) {
+  const auto set_values = [name, set](const std::vector<float>& v) {
+    for (const float x : v) {
+      if (!std::isfinite(x)) throw Error(ErrorKind::usage, name + ": not a finite number");
+    }
+    if (v.size() != 3) throw Error(ErrorKind::usage, name + ": expected X,Y,Z");
+    set(Vec3(v[0], v[1], v[2]));
+  };
+  return keep(app_.add_option_function<std::vector<float>>(name, set_values, description))
+      ->numbers(3)
+      ->type_name("X,Y,Z");
+}
+
+Option* Options::add_repeated_numbers(const std::string& name, int count,
+                                      const std::function<void(std::span<const float>)>& set,
+                                      const std::string& description) {
+  const auto set_values = [set, count](const std::vector<float>& values) {
+    const std::span<const float> all = values;
+    const auto step = static_cast<std::size_t>(count);
+    for (std::size_t first = 0; first < all.size(); first += step) set(all.subspan(first, step));
+  };
+  return keep(app_.add_option_function<std::vector<float>>(name, set_values, description))
+      ->repeated_numbers(count);
+}
+
+Option* Options::add_size(const std::string& name, int& width, int& height,
+                          const std::string& description) {
+  const auto set = [name, &width, &height](const std::string& size) {
+    char end = 0;
+    if (std::sscanf(size.c_str(), "%5dx%5d%c", &width, &height, &end) != 2 ||
+        std::min(width, height) < 1 || std::max(width, height) > 16384) {
+      throw Error(ErrorKind::usage, name + ": not a size",
+                  {.found = size, .expected = "WIDTHxHEIGHT, each from 1 to 16384"});
+    }
+  };
+  return add_text(name, set, description)->type_name("WxH");
+}
+
+Option* Options::add_text(const std::string& name,
+                          const std::function<void(const std::string&)>& set,
+                          const std::string& description) {
+  return keep(app_.add_option_function<std::string>(name, set, description));
+}
+
+Option* Options::add_flag(const std::string& name, bool& value, const std::string& description) {
+  return keep(app_.add_flag(name, value, description));
+}
+
+void Options::start_group(const std::string& headline) { app_.option_defaults()->group(headline); }
+
+Option* Options::get(const std::string& name) { return keep(app_.get_option(name)); }
+
+}  // namespace prt::cli
