@@ -59,7 +59,7 @@ class DiffuseBake {
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
         coefficient_count_(sh::row_size(options.band_count)),
         checkpoint_(options.checkpoint, checkpoint_key(scene, options)) {
-    if (options.shadowed) index_.shadow_tree();
+    if (options.shadowed) index_.build_for_shadow_rays(options.ray_count);
     stats_.build_seconds = watch_.seconds();
     signal_.band_count = options.band_count;
     signal_.channel_count = choose_channel_count(scene, options.channels, options.bounce_count > 0);

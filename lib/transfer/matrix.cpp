@@ -89,7 +89,7 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
   matrix_stride_ = padded_columns(n);
   const Stopwatch watch;
   index_ = std::make_unique<SceneIndex>(scene);
-  if (options.shadowed) index_->shadow_tree();
+  if (options.shadowed) index_->build_for_shadow_rays(options.ray_count);
   stats_.build_seconds = watch.seconds();
   visibility_ = compute_visibility(*index_,
                                    {2 * options.band_count - 1, options.ray_count, options.shadowed,

@@ -18,6 +18,10 @@ namespace {
 // 0.6 at the edge of a regular grid, more at its corner, 0 inside. Below this it is not an edge.
 constexpr float kEdgeShift = 0.25f;
 
+// A beam of the shadow tree looks into every box that it meets. Its lead over the engine, 1.8 times
+// at 70 triangles a ray, is gone at 270.
+constexpr std::size_t kMostTrianglesPerRay = 200;
+
 float largest_coordinate(const Vec3& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 }
@@ -74,6 +78,15 @@ const ray::ShadowTree* SceneIndex::shadow_tree() const {
   std::call_once(shadow_tree_once_,
                  [&] { shadow_tree_ = std::make_unique<ray::ShadowTree>(triangle_list().view()); });
   return shadow_tree_.get();
+}
+
+void SceneIndex::build_for_shadow_rays(int ray_count) {
+  if (triangle_count() <= kMostTrianglesPerRay * static_cast<std::size_t>(ray_count)) {
+    shadow_tree();
+  } else {
+    drop_shadow_tree();
+    engine();
+  }
 }
 
 void SceneIndex::drop_shadow_tree() {

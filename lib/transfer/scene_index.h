@@ -30,8 +30,11 @@ class SceneIndex {
   const mesh::Scene& scene() const { return scene_; }
   /// For hits; built when first asked for, which threads should not be the first to do.
   const ray::Engine& engine() const;
-  /// For shadow rays; built in the same way. Null after drop_shadow_tree.
+  /// For shadow rays; built in the same way. Null after drop_shadow_tree: the engine then serves.
   const ray::ShadowTree* shadow_tree() const;
+  /// Builds what answers so many rays a vertex fastest: the shadow tree, or, where its beams would
+  /// be wide for so many triangles, the engine.
+  void build_for_shadow_rays(int ray_count);
   /// Gives the shadow tree's memory back, some 100 bytes a vertex, for good.
   void drop_shadow_tree();
   std::size_t vertex_count() const { return vertex_offsets_.back(); }
