@@ -14,7 +14,6 @@ namespace prt::brdf {
 
 namespace {
 
-
 Direction direction(const Point& angles) {
   const double s = std::sin(angles.x);
   return {s * std::cos(angles.y), s * std::sin(angles.y), std::cos(angles.x)};

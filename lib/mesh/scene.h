@@ -27,9 +27,9 @@ struct Material {
   float metallic = 0.0f, roughness = 1.0f;  ///< factors in [0, 1]
   int metallic_roughness_image = -1;        ///< index into Scene::images, -1: none
   Wrap metallic_roughness_wrap_s = Wrap::repeat, metallic_roughness_wrap_t = Wrap::repeat;
-  float ior = 1.5f;                         ///< >= 1, or 0 for infinity
-  float specular = 1.0f;                    ///< in [0, 1]
-  Vec3 specular_color{1.0f, 1.0f, 1.0f};    ///< >= 0
+  float ior = 1.5f;                       ///< >= 1, or 0 for infinity
+  float specular = 1.0f;                  ///< in [0, 1]
+  Vec3 specular_color{1.0f, 1.0f, 1.0f};  ///< >= 0
   bool has_anisotropy = false;
   float anisotropy_strength = 0.0f;  ///< in [0, 1]
   float anisotropy_rotation = 0.0f;  ///< radians, counter-clockwise from the tangent
