@@ -21,10 +21,24 @@ if(PRTKIT_FUZZ)
   target_link_options(prt_options INTERFACE -fsanitize=address,undefined)
 endif()
 
-# prt_module(NAME SOURCES files… DEPENDS public… PRIVATE private…): static library prt_NAME from
-# those files, or from every .cpp here that no module before it was made from.
+# prt_precompile(OWNER headers…): a precompiled header that targets of the same options share with
+# REUSE_FROM. Files include what they use all the same:
+# CMAKE_DISABLE_PRECOMPILE_HEADERS does without.
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/empty.cpp CONTENT "")
+function(prt_precompile owner)
+  add_library(${owner} OBJECT ${CMAKE_BINARY_DIR}/empty.cpp)
+  target_link_libraries(${owner} PRIVATE prt_options Imath::Imath fmt::fmt
+                                         nlohmann_json::nlohmann_json)
+  target_precompile_headers(${owner} PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numeric>
+    <optional> <span> <string> <vector> <ImathMatrix.h> <fmt/format.h> <nlohmann/json.hpp> ${ARGN})
+endfunction()
+
+# prt_module(NAME GLUE SOURCES files… DEPENDS public… PRIVATE private…): static library prt_NAME
+# from those files, or from every .cpp here that no module before it was made from. A module that is
+# GLUE has no loop worth optimising, only text to parse and libraries to call.
 function(prt_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "GLUE" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
   set(sources ${ARG_SOURCES})
   if(NOT sources)
     file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp *.h)
@@ -35,6 +49,10 @@ function(prt_module name)
   add_library(prt_${name} STATIC ${sources})
   set_target_properties(prt_${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(prt_${name} PUBLIC prt_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE})
+  if(ARG_GLUE)
+    target_compile_options(prt_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+  target_precompile_headers(prt_${name} REUSE_FROM prt_precompiled)
 endfunction()
 
 # prt_test(NAME DEPENDS libraries… LAUNCHER command…): test_NAME from every *_test.cpp of
@@ -50,6 +68,7 @@ function(prt_test name)
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(test_${name} REUSE_FROM prt_precompiled_tests)
   add_test(NAME ${name} COMMAND ${ARG_LAUNCHER} $<TARGET_FILE:test_${name}>
            WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/tests)
 endfunction()

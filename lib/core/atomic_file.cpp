@@ -1,6 +1,7 @@
 #include "core/atomic_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -122,8 +123,8 @@ AtomicFile::AtomicFile(std::filesystem::path path, bool no_clobber)
   path_ = resolved(path_);
   install_handlers();
   const std::string extension = path_.extension().string();
-  std::string pattern = (path_.parent_path() / ("." + path_.stem().string() + ".XXXXXX")).string();
-  pattern += extension;
+  const std::string name = fmt::format(".{}.XXXXXX{}", path_.stem().string(), extension);
+  std::string pattern = (path_.parent_path() / name).string();
   const RegistrationGuard guard;
   descriptor_ = mkostemps(pattern.data(), static_cast<int>(extension.size()), O_CLOEXEC);
   if (descriptor_ < 0) throw_system("cannot create the output", path_);

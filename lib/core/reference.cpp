@@ -1,5 +1,7 @@
 #include "core/reference.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <string>
@@ -53,7 +55,7 @@ std::filesystem::path resolve_reference(const std::filesystem::path& file,
                                         std::string_view reference, Escapes escapes) {
   std::string name =
       escapes == Escapes::percent ? decode_percent(reference) : std::string(reference);
-  const std::string found = "\"" + std::string(reference.substr(0, 100)) + "\"";
+  const std::string found = fmt::format("\"{}\"", reference.substr(0, 100));
   const auto reject = [&](const char* why) {
     throw_bad_input(why, {.file = file.string(),
                           .element = "reference to another file",

@@ -7,8 +7,8 @@
 namespace prt::cpca {
 namespace {
 
-constexpr std::size_t kPointCount = 1500;
-constexpr int kDimension = 80;
+constexpr std::size_t kWeightedCount = 1500;
+constexpr int kWeightedDimension = 80;
 
 double weighted_error(const Encoded& encoded, const std::vector<float>& signal,
                       const std::vector<float>& weights) {
@@ -20,40 +20,43 @@ double weighted_error(const Encoded& encoded, const std::vector<float>& signal,
 
 class PointWeights : public testing::TestWithParam<decltype(&encode_static)> {
  protected:
-  const std::vector<float> signal_ = make_signal(kPointCount, kDimension, 6);
+  const std::vector<float> signal_ = make_signal(kWeightedCount, kWeightedDimension, 6);
   Options options_{.cluster_count = 8, .component_count = 3, .iterations = 6};
 };
 
 TEST_P(PointWeights, ErrorsOfHeavyPointsFall) {
-  std::vector<float> weights(kPointCount, 0.01f);
-  for (std::size_t p = 0; p < kPointCount; p += 5) weights[p] = 10.0f;
-  const Encoded plain = GetParam()(signal_, kDimension, options_);
+  std::vector<float> weights(kWeightedCount, 0.01f);
+  for (std::size_t p = 0; p < kWeightedCount; p += 5) weights[p] = 10.0f;
+  const Encoded plain = GetParam()(signal_, kWeightedDimension, options_);
   options_.point_weights = weights;
-  const Encoded weighted = GetParam()(signal_, kDimension, options_);
+  const Encoded weighted = GetParam()(signal_, kWeightedDimension, options_);
   EXPECT_LT(weighted_error(weighted, signal_, weights),
             0.95 * weighted_error(plain, signal_, weights));
 }
 
 TEST_P(PointWeights, AllTheSameChangeLittle) {
-  const std::vector<float> weights(kPointCount, 4.0f), ones(kPointCount, 1.0f);
-  const double plain = weighted_error(GetParam()(signal_, kDimension, options_), signal_, ones);
+  const std::vector<float> weights(kWeightedCount, 4.0f), ones(kWeightedCount, 1.0f);
+  const double plain =
+      weighted_error(GetParam()(signal_, kWeightedDimension, options_), signal_, ones);
   options_.point_weights = weights;
-  const double weighted = weighted_error(GetParam()(signal_, kDimension, options_), signal_, ones);
+  const double weighted =
+      weighted_error(GetParam()(signal_, kWeightedDimension, options_), signal_, ones);
   EXPECT_NEAR(weighted, plain, 0.01 * plain);
 }
 
 TEST_P(PointWeights, PointsThatWeighNothingDoNotMatter) {
   auto spoilt = signal_;
-  std::vector<float> weights(kPointCount, 1.0f);
+  std::vector<float> weights(kWeightedCount, 1.0f);
   for (std::size_t p = 0; p < 100; ++p) {
     weights[p] = 0.0f;
-    for (std::size_t i = 0; i < kDimension; ++i) spoilt[p * kDimension + i] = 10.0f;
+    for (std::size_t i = 0; i < kWeightedDimension; ++i) spoilt[p * kWeightedDimension + i] = 10.0f;
   }
   options_.cluster_count = 1;
-  const std::span<const float> rest = std::span(signal_).subspan(100 * kDimension);
-  const auto expected = point_errors(GetParam()(rest, kDimension, options_).encoding, rest);
+  const std::span<const float> rest = std::span(signal_).subspan(100 * kWeightedDimension);
+  const auto expected = point_errors(GetParam()(rest, kWeightedDimension, options_).encoding, rest);
   options_.point_weights = weights;
-  const auto errors = point_errors(GetParam()(spoilt, kDimension, options_).encoding, spoilt);
+  const auto errors =
+      point_errors(GetParam()(spoilt, kWeightedDimension, options_).encoding, spoilt);
   for (std::size_t p = 0; p < expected.size(); ++p) {
     EXPECT_NEAR(errors[100 + p], expected[p], 1e-3 * (expected[p] + 1e-2));
   }

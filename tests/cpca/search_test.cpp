@@ -10,15 +10,15 @@
 namespace prt::cpca {
 namespace {
 
-constexpr int kDimension = 40;
+constexpr int kSearchDimension = 40;
 
 TEST(EncodeWithin, KeepsToTheErrorForAboutThreeEncodings) {
-  const auto signal = make_surface(4000, kDimension);
+  const auto signal = make_surface(4000, kSearchDimension);
   for (const Norm norm : {Norm::rmse, Norm::maximum}) {
     std::size_t last = ~std::size_t{0};
     for (double max_error : {0.01, 0.03, 0.1}) {
       const Found found = encode_within({.max_error = max_error, .norm = norm, .max_bytes = {}},
-                                        Method::iterative, signal, kDimension, {});
+                                        Method::iterative, signal, kSearchDimension, {});
       EXPECT_LE(relative_error(found.encoded.encoding, signal, norm), max_error);
       EXPECT_LE(found.flops_cost, norm == Norm::rmse ? 3.0 : 4.0) << max_error;
       EXPECT_GE(found.flops_cost, 1.0);
@@ -48,11 +48,11 @@ TEST(EncodeWithin, IsAboutAsSmallAsTheBestOfAllCounts) {
 }
 
 TEST(EncodeWithin, KeepsToTheBytes) {
-  const auto signal = make_surface(4000, kDimension);
+  const auto signal = make_surface(4000, kSearchDimension);
   double last = 0.0;
   for (std::size_t max_bytes : {200000u, 100000u, 30000u}) {
     const Found found = encode_within({.max_error = {}, .max_bytes = max_bytes}, Method::iterative,
-                                      signal, kDimension, {});
+                                      signal, kSearchDimension, {});
     EXPECT_LE(storage_bytes(found.encoded.encoding), max_bytes);
     EXPECT_GT(storage_bytes(found.encoded.encoding), max_bytes * 9 / 10);
     EXPECT_LE(found.flops_cost, 3.0);
@@ -63,13 +63,13 @@ TEST(EncodeWithin, KeepsToTheBytes) {
 }
 
 TEST(EncodeWithin, KeepsToWeightedErrors) {
-  const auto signal = make_surface(3000, kDimension);
+  const auto signal = make_surface(3000, kSearchDimension);
   std::vector<float> weights(3000, 0.1f);
   for (std::size_t p = 0; p < weights.size(); p += 10) weights[p] = 9.1f;
   for (const Norm norm : {Norm::rmse, Norm::maximum}) {
     const Found found =
         encode_within({.max_error = 0.05, .norm = norm, .max_bytes = {}}, Method::iterative, signal,
-                      kDimension, {.iterations = 8, .point_weights = weights});
+                      kSearchDimension, {.iterations = 8, .point_weights = weights});
     const Encoding& encoding = found.encoded.encoding;
     EXPECT_LE(relative_error(encoding, signal, norm, weights), 0.05);
     EXPECT_GT(relative_error(encoding, signal, norm, weights), 0.03);
@@ -79,10 +79,10 @@ TEST(EncodeWithin, KeepsToWeightedErrors) {
 }
 
 TEST(EncodeWithin, TakesAllMethods) {
-  const auto signal = make_surface(3000, kDimension);
+  const auto signal = make_surface(3000, kSearchDimension);
   for (const Method method : {Method::fixed, Method::adaptive}) {
     const Found found = encode_within({.max_error = 0.03, .max_bytes = {}}, method, signal,
-                                      kDimension, {.iterations = 8});
+                                      kSearchDimension, {.iterations = 8});
     EXPECT_LE(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.03);
     EXPECT_GT(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.025);
   }
@@ -90,11 +90,12 @@ TEST(EncodeWithin, TakesAllMethods) {
 
 // Small clusters have the most vectors, which take more room than the weights that pay for them.
 TEST(EncodeWithin, AdaptiveKeepsToTheBytesToo) {
-  const auto signal = make_uneven_signal(2000, kDimension, 4);
+  const auto signal = make_uneven_signal(2000, kSearchDimension, 4);
   for (std::size_t max_bytes : {100000u, 50000u, 30000u}) {
-    const Encoded encoded = encode_within({.max_error = {}, .max_bytes = max_bytes},
-                                          Method::adaptive, signal, kDimension, {.iterations = 5})
-                                .encoded;
+    const Encoded encoded =
+        encode_within({.max_error = {}, .max_bytes = max_bytes}, Method::adaptive, signal,
+                      kSearchDimension, {.iterations = 5})
+            .encoded;
     EXPECT_LE(storage_bytes(encoded.encoding), max_bytes);
     EXPECT_GT(storage_bytes(encoded.encoding), max_bytes / 2);
   }

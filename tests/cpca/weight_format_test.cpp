@@ -11,10 +11,11 @@
 namespace prt::cpca {
 namespace {
 
-constexpr int kDimension = 20;
+constexpr int kFormatDimension = 20;
 
 Encoding encode(const std::vector<float>& signal, int components) {
-  return encode_static(signal, kDimension, {.cluster_count = 6, .component_count = components})
+  return encode_static(signal, kFormatDimension,
+                       {.cluster_count = 6, .component_count = components})
       .encoding;
 }
 
@@ -24,12 +25,12 @@ double error_of(const Encoding& encoding, const std::vector<float>& signal) {
 }
 
 TEST(NormalizeWeights, MovesNoPointByMoreThanHalfAStepInEveryComponent) {
-  const auto signal = make_signal(900, kDimension);
+  const auto signal = make_signal(900, kFormatDimension);
   const Encoding before = encode(signal, 4);
   for (const WeightFormat format : {WeightFormat::unorm16, WeightFormat::unorm8}) {
     Encoding after = before;
     normalize_weights(format, after);
-    std::vector<float> expected(kDimension), found(kDimension);
+    std::vector<float> expected(kFormatDimension), found(kFormatDimension);
     for (std::size_t p = 0; p < before.point_count; ++p) {
       double bound = 0.0;  // half a step is half of |x_i| / greatest
       for (int i = 0; i < 4; ++i) {
@@ -45,7 +46,7 @@ TEST(NormalizeWeights, MovesNoPointByMoreThanHalfAStepInEveryComponent) {
       reconstruct(before, p, expected);
       reconstruct(after, p, found);
       double moved = 0.0;
-      for (std::size_t j = 0; j < kDimension; ++j) {
+      for (std::size_t j = 0; j < kFormatDimension; ++j) {
         moved += std::pow(double{found[j]} - double{expected[j]}, 2);
       }
       EXPECT_LE(std::sqrt(moved), std::sqrt(bound) + 1e-6);
@@ -69,7 +70,7 @@ TEST(NormalizeWeights, ReachesZeroAndOneAndFoldsConstantWeightsIntoTheMean) {
 }
 
 TEST(NormalizeWeights, LeavesWhatAClusterDoesNotHave) {
-  const auto signal = make_signal(900, kDimension);
+  const auto signal = make_signal(900, kFormatDimension);
   Encoding encoding = encode(signal, 3);
   encoding.component_counts = {3, 0, 1, 2, 3, 3};
   for (std::size_t p = 0; p < encoding.point_count; ++p) {
@@ -94,16 +95,17 @@ TEST(NormalizeWeights, LeavesWhatAClusterDoesNotHave) {
 
 TEST(ChooseWeights, TakesTheSmallestThatAddsUnderOnePercent) {
   // Noise of a few strengths: the better the encoding, the finer its weights must be.
-  const auto exact = make_signal(900, kDimension);
+  const auto exact = make_signal(900, kFormatDimension);
   const Encoding best = encode(exact, 8);
   std::vector<WeightFormat> chosen;
   for (const float noise : {0.1f, 1e-4f, 1e-7f}) {
     auto signal = exact;
     const auto added = random_values(signal.size(), 3);
     for (std::size_t p = 0; p < 900; ++p) {
-      const auto row = std::span(signal).subspan(p * kDimension, kDimension);
+      const auto row = std::span(signal).subspan(p * kFormatDimension, kFormatDimension);
       reconstruct(best, p, row);
-      for (std::size_t j = 0; j < kDimension; ++j) row[j] += noise * added[p * kDimension + j];
+      for (std::size_t j = 0; j < kFormatDimension; ++j)
+        row[j] += noise * added[p * kFormatDimension + j];
     }
     Encoding encoding = best;
     const double before = error_of(encoding, signal);
@@ -115,7 +117,7 @@ TEST(ChooseWeights, TakesTheSmallestThatAddsUnderOnePercent) {
 }
 
 TEST(ChooseWeights, DoesAsItIsTold) {
-  const auto signal = make_signal(300, kDimension);
+  const auto signal = make_signal(300, kFormatDimension);
   for (const WeightFormat format :
        {WeightFormat::float32, WeightFormat::unorm16, WeightFormat::unorm8}) {
     Encoding encoding = encode(signal, 2), expected = encoding;

@@ -3,17 +3,11 @@
 
 #include <array>
 
-#include "brdf/brdf.h"
 #include "comparison.h"
-#include "mesh/frame.h"
 #include "scenes.h"
 
 namespace prt::reference {
 namespace {
-
-brdf::Direction in_frame(const mesh::Frame& frame, const Vec3& w) {
-  return {double{w.dot(frame.x)}, double{w.dot(frame.y)}, double{w.dot(frame.z)}};
-}
 
 Vec3 from_frame(const mesh::Frame& frame, const brdf::Direction& w) {
   const Vec3 v(w);

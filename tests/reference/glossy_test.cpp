@@ -2,18 +2,14 @@
 // that the matrices of the bake are made by.
 #include <gtest/gtest.h>
 
-#include "brdf/brdf.h"
 #include "brdf/lobe_matrix.h"
 #include "comparison.h"
-#include "mesh/frame.h"
 #include "scenes.h"
 #include "sh/basis.h"
 #include "sh/rotation.h"
 
 namespace prt::reference {
 namespace {
-
-const BandLimitedIllumination kWhite(sh::constant_light(1, Vec3(1.0f)));
 
 const char* const kBrdfs[] = {"lambert",
                               "phong:10",
@@ -23,10 +19,6 @@ const char* const kBrdfs[] = {"lambert",
                               "ward:0.1,0.4",
                               "ashikhmin-shirley:10,100",
                               "ashikhmin-shirley:40,10,0.3"};
-
-brdf::Direction in_frame(const mesh::Frame& frame, const Vec3& w) {
-  return {double{w.dot(frame.x)}, double{w.dot(frame.y)}, double{w.dot(frame.z)}};
-}
 
 // A white tilted quad fills the picture; its frame is the world's X axis made orthogonal to the
 // normal.

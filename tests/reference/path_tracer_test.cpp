@@ -12,8 +12,6 @@
 namespace prt::reference {
 namespace {
 
-const BandLimitedIllumination kWhite(sh::constant_light(1, Vec3(1.0f)));
-
 // Where the centre of a pixel meets the plane of the given normal through the origin.
 Vec3 point_on_plane(const camera::Camera& camera, const Vec3& normal, int size, int x, int y) {
   const Vec3 direction =

@@ -6,13 +6,23 @@
 #include <functional>
 #include <numbers>
 
+#include "brdf/brdf.h"
 #include "camera/camera.h"
+#include "mesh/frame.h"
 #include "mesh/scene.h"
 #include "reference/path_tracer.h"
+#include "sh/light.h"
 
 namespace prt::reference {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
+
+inline const BandLimitedIllumination kWhite(sh::constant_light(1, Vec3(1.0f)));
+
+/// A direction of the world in a frame.
+inline brdf::Direction in_frame(const mesh::Frame& frame, const Vec3& w) {
+  return {double{w.dot(frame.x)}, double{w.dot(frame.y)}, double{w.dot(frame.z)}};
+}
 
 inline int add_material(mesh::Scene& scene, const Vec3& albedo, bool double_sided = false) {
   mesh::Material material;

@@ -16,7 +16,7 @@
 namespace prt::runtime {
 namespace {
 
-float largest_difference(const sh::Light& a, const sh::Light& b) {
+float coefficient_difference(const sh::Light& a, const sh::Light& b) {
   float largest = 0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t k = 0; k < a.coefficients[c].size(); ++k)
@@ -38,15 +38,15 @@ TEST(NearLight, IsADiskOrADirectionFromEachPoint) {
   const Vec3 point(1, 0, 0), color(1, 2, 3);
   const NearLight sphere{Vec3(1, 2, 0), 1.0f, color};
   const float angle = std::numbers::pi_v<float> / 6;  // half as high as it is far
-  EXPECT_LT(largest_difference(light_at({&sphere, 1}, 5, point),
-                               sh::disk_light(5, Vec3(0, 1, 0), angle, color)),
+  EXPECT_LT(coefficient_difference(light_at({&sphere, 1}, 5, point),
+                                   sh::disk_light(5, Vec3(0, 1, 0), angle, color)),
             1e-5f);
-  EXPECT_LT(
-      largest_difference(light_at({&sphere, 1}, 5, Vec3(1, 1.5f, 0)), sh::constant_light(5, color)),
-      1e-5f);
+  EXPECT_LT(coefficient_difference(light_at({&sphere, 1}, 5, Vec3(1, 1.5f, 0)),
+                                   sh::constant_light(5, color)),
+            1e-5f);
   const NearLight lamp{Vec3(1, 2, 0), 0.0f, color};
-  EXPECT_LT(largest_difference(light_at({&lamp, 1}, 5, point),
-                               sh::directional_light(5, Vec3(0, 1, 0), color / 4.0f)),
+  EXPECT_LT(coefficient_difference(light_at({&lamp, 1}, 5, point),
+                                   sh::directional_light(5, Vec3(0, 1, 0), color / 4.0f)),
             1e-5f);
   const std::array both{sphere, lamp};
   EXPECT_GT(light_at(both, 1, point).coefficients[0][0],
@@ -68,8 +68,8 @@ TEST(LightField, IsItsSamplesAtThePointsOfTheGrid) {
       for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t k = 0; k < 16; ++k)
           expected.coefficients[c][k] += distant.coefficients[c][k];
-      EXPECT_LT(largest_difference(field.samples[i], expected), 1e-5f);
-      EXPECT_LT(largest_difference(light_in(field, point), expected), 1e-5f);
+      EXPECT_LT(coefficient_difference(field.samples[i], expected), 1e-5f);
+      EXPECT_LT(coefficient_difference(light_in(field, point), expected), 1e-5f);
     }
   }
   EXPECT_FALSE(light_field(distant, {}, grid_of(4)).varies());
@@ -83,8 +83,8 @@ TEST(LightField, FinerGridsComeNearerToTheLight) {
     float worst = 0;
     for (float x = -1; x <= 1; x += 0.125f)
       for (float y = -2; y <= 2; y += 0.25f)
-        worst = std::max(worst, largest_difference(light_at({&lamp, 1}, 5, Vec3(x, y, 0)),
-                                                   light_in(field, Vec3(x, y, 0))));
+        worst = std::max(worst, coefficient_difference(light_at({&lamp, 1}, 5, Vec3(x, y, 0)),
+                                                       light_in(field, Vec3(x, y, 0))));
     EXPECT_LT(worst, 0.6f * last) << size;
     last = worst;
   }
