@@ -40,6 +40,14 @@ class TransferFile : public testing::Test {
   fs::path folder_;
 };
 
+/// Header::erase of OpenEXR 3.1 does not free what it takes out.
+void remove(Imf::Header& header, const std::string& name) {
+  Imf::Header rest;
+  for (auto i = header.begin(); i != header.end(); ++i)
+    if (i.name() != name) rest.insert(i.name(), i.attribute());
+  header = rest;
+}
+
 TransferSignal make_signal(int band_count, int row_count, int channel_count,
                            const std::vector<std::size_t>& vertex_counts) {
   TransferSignal signal{.band_count = band_count,
@@ -272,9 +280,9 @@ TEST_F(TransferFile, RefusesHeadersThatDoNotFit) {
     std::function<void(Header&)> change;
     const char* message;
   } cases[] = {
-      {[](Header& header) { header.erase("prtkit_band_count"); }, "prtkit_band_count"},
+      {[](Header& header) { remove(header, "prtkit_band_count"); }, "prtkit_band_count"},
       {[](Header& header) {
-         header.erase("prtkit_ray_count");
+         remove(header, "prtkit_ray_count");
          header.insert("prtkit_ray_count", Imf::StringAttribute("16"));
        },
        "prtkit_ray_count"},
