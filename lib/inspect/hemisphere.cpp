@@ -34,8 +34,8 @@ Json row(const char* name, HemisphereProjection kind, int function_count) {
 
 Json singular_values(const std::vector<int>& functions) {
   const std::size_t size = functions.size();
-  std::vector<double> gram = sh::hemisphere_gram(functions, functions);
-  const auto values = linalg::largest_eigenpairs({gram.data(), size, size}, size).values;
+  const std::vector<double> gram = sh::hemisphere_gram(functions, functions);
+  const auto values = linalg::svd({gram.data(), size, size}).values;
   return {{"largest", values[0]},
           {"second_smallest", values[size - 2]},
           {"smallest", values[size - 1]}};
