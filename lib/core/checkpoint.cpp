@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <utility>
 #include <vector>
 
 #include "core/cpu.h"
@@ -22,12 +22,12 @@ namespace prt {
 
 namespace {
 
-constexpr std::string_view kKind = "prtkit unfinished work, version 1\n";
+constexpr std::string_view kKind = "prtkit unfinished work, version ", kVersion = "2\n";
 
 /// Before each result; the hash of both, kHashSize characters, comes after it.
 struct RecordHead {
   std::uint32_t stage, index;
-  std::uint64_t byte_count;
+  std::uint64_t byte_count, number;
 };
 constexpr std::size_t kHashSize = 32;
 
@@ -38,7 +38,7 @@ std::string make_head(const std::string& key) {
         std::string_view(key)}) {
     hasher.add(part.data(), part.size());
   }
-  return std::string(kKind) + hasher.hex();
+  return std::string(kKind) + std::string(kVersion) + hasher.hex();
 }
 
 bool read_all(int descriptor, void* bytes, std::size_t count, std::size_t offset) {
@@ -117,8 +117,7 @@ void Checkpoint::open_existing() {
   if (begun_) read_records();
 }
 
-// A record whose hash is wrong is skipped: it may have been overwritten when the process died. What
-// follows the last good one is overwritten.
+// A record whose hash is wrong was being overwritten when the process died: its room is free.
 void Checkpoint::read_records() {
   struct stat status {};
   fstat(descriptor_, &status);
@@ -128,12 +127,46 @@ void Checkpoint::read_records() {
   for (std::size_t offset = end_; size - offset >= sizeof head + kHashSize;) {
     if (!read_all(descriptor_, &head, sizeof head, offset)) return;
     if (head.byte_count > size - offset - sizeof head - kHashSize) return;
-    const bool whole = is_whole(descriptor_, head, offset);
-    const Place place{offset + sizeof head, head.byte_count};
-    offset = place.offset + place.byte_count + kHashSize;
-    if (!whole) continue;
-    places_[{head.stage, head.index}] = place;
-    end_ = offset;
+    const Place place{offset + sizeof head, head.byte_count, head.number};
+    if (is_whole(descriptor_, head, offset)) {
+      add({head.stage, head.index}, place);
+    } else {
+      room_.emplace(place.byte_count, place.offset);
+    }
+    end_ = offset = place.offset + place.byte_count + kHashSize;
+  }
+}
+
+void Checkpoint::add(Name name, const Place& place) {
+  last_number_ = std::max(last_number_, place.number);
+  const auto [known, is_new] = places_.try_emplace(name, place);
+  if (is_new) return;
+  const bool is_later = place.number > known->second.number;
+  const Place older = is_later ? std::exchange(known->second, place) : place;
+  room_.emplace(older.byte_count, older.offset);
+}
+
+std::size_t Checkpoint::byte_count(Name name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = places_.find(name);
+  return found != places_.end() ? found->second.byte_count : 0;
+}
+
+std::size_t Checkpoint::byte_count(std::uint32_t stage) const {
+  const std::lock_guard lock(mutex_);
+  std::size_t sum = 0;
+  for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
+       ++at) {
+    sum += at->second.byte_count;
+  }
+  return sum;
+}
+
+void Checkpoint::release(std::uint32_t stage) {
+  const std::lock_guard lock(mutex_);
+  for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
+       at = places_.erase(at)) {
+    room_.emplace(at->second.byte_count, at->second.offset);
   }
 }
 
@@ -144,26 +177,33 @@ bool Checkpoint::restore_bytes(Name name, std::span<std::byte> result) const {
          read_all(descriptor_, result.data(), result.size(), found->second.offset);
 }
 
-void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
+bool Checkpoint::is_due() const {
   const std::lock_guard lock(mutex_);
-  if (given_up_ || (!begun_ && watch_.seconds() < after_seconds_)) return;
+  return !given_up_ && (begun_ || watch_.seconds() >= after_seconds_);
+}
+
+void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
+  if (!is_due()) return;
+  const std::lock_guard lock(mutex_);
+  if (given_up_) return;
   if (!begun_) begin_file();
   if (given_up_) return;
-  const RecordHead head{name.stage, name.index, result.size()};
+  const RecordHead head{name.stage, name.index, result.size(), last_number_ + 1};
   Hasher hasher;
   hasher.add(&head, sizeof head);
   hasher.add(result);
-  const auto found = places_.find(name);
-  assert(found == places_.end() || found->second.byte_count == result.size());
-  const std::size_t offset = found == places_.end() ? end_ + sizeof head : found->second.offset;
+  const auto room = room_.find(result.size());
+  const std::size_t offset = room != room_.end() ? room->second : end_ + sizeof head;
+  if (room != room_.end()) room_.erase(room);
   if (!write_all(descriptor_, &head, sizeof head, offset - sizeof head) ||
       !write_all(descriptor_, result.data(), result.size(), offset) ||
       !write_all(descriptor_, hasher.hex().data(), kHashSize, offset + result.size())) {
     give_up(std::strerror(errno));
     unlink(path_.c_str());  // leaves room for the output
+    close(std::exchange(descriptor_, -1));
     return;
   }
-  places_[name] = {offset, result.size()};
+  add(name, {offset, result.size(), head.number});
   end_ = std::max(end_, offset + result.size() + kHashSize);
 }
 
@@ -186,6 +226,7 @@ void Checkpoint::give_up(const char* why) {
   log::warning("{}: {}: this run cannot be continued if it is interrupted", path_.string(), why);
   given_up_ = true;
   places_.clear();
+  room_.clear();
 }
 
 void remove_checkpoint(const std::filesystem::path& path) {

@@ -1,6 +1,8 @@
 // What a long computation has finished, kept in a file beside its output, so that a run that was
 // killed is continued by the next one. Results are bytes under a name: those of a block that is
-// done, or a state that later ones replace. The file grows with the names alone.
+// done, or a state that later ones replace. A result takes the room of one of its size that was
+// replaced or released, never its own, so that a kill at any moment leaves the one or the other;
+// and so the file is as large as the names in use, and one more of each size that is replaced.
 //
 // It holds hashes of itself: results that were only half written, or damaged since, are not there
 // for the reader. Keeping nothing is never an error: where the file cannot be written, or another
@@ -14,6 +16,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/stopwatch.h"
 
@@ -46,22 +49,41 @@ class Checkpoint {
     return restore_bytes(name, std::as_writable_bytes(result));
   }
 
-  /// Keeps the result if after_seconds have passed, or an earlier run is being continued. One of
-  /// the same name and size is overwritten; the name's size must not change.
+  /// The same for a result of any size, which the vector takes.
+  template <class T>
+  bool restore(Name name, std::vector<T>& result) const {
+    result.resize(byte_count(name) / sizeof(T));
+    return restore(name, std::span(result));
+  }
+
+  /// Keeps the result if after_seconds have passed, or an earlier run is being continued. It
+  /// replaces one of the same name.
   template <class T>
   void store(Name name, std::span<const T> result) {
     store_bytes(name, std::as_bytes(result));
   }
 
+  /// Whether store() keeps anything now: states need not be put together before.
+  bool is_due() const;
+
+  /// Of all results of a stage.
+  std::size_t byte_count(std::uint32_t stage) const;
+  /// Gives the room of a stage to others: its results are not needed again.
+  void release(std::uint32_t stage);
+
  private:
   struct Place {
     std::size_t offset, byte_count;  ///< of the result
+    std::uint64_t number;            ///< the later was stored later
   };
+
+  std::size_t byte_count(Name name) const;
 
   bool restore_bytes(Name name, std::span<std::byte> result) const;
   void store_bytes(Name name, std::span<const std::byte> result);
   void open_existing();
   void read_records();
+  void add(Name name, const Place& place);
   void begin_file();
   void give_up(const char* why);
 
@@ -73,7 +95,9 @@ class Checkpoint {
   int descriptor_ = -1;
   bool given_up_, begun_ = false;  ///< begun_: the file has head_
   std::size_t end_ = 0;            ///< of the last record
+  std::uint64_t last_number_ = 0;
   std::map<Name, Place> places_;
+  std::multimap<std::size_t, std::size_t> room_;  ///< offsets of results no longer needed, by size
 };
 
 /// Removes the file if it is a checkpoint: when the output is written.

@@ -70,19 +70,78 @@ TEST_F(CheckpointTest, MakesNoFileBeforeItsTimeOrWithoutAPath) {
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
-TEST_F(CheckpointTest, AStateIsReplacedInPlace) {
+/// A state of 4000 bytes, or more.
+void store_state(Checkpoint& checkpoint, int value, std::size_t count = 1000) {
+  const std::vector<int> state(count, value);
+  checkpoint.store({0, 0}, std::span<const int>(state));
+}
+
+int state_of(const Checkpoint& checkpoint) {
+  std::vector<int> state;
+  if (!checkpoint.restore({0, 0}, state)) return -1;
+  EXPECT_EQ(state, std::vector<int>(state.size(), state.at(0)));
+  return state[0];
+}
+
+TEST_F(CheckpointTest, AStateIsReplacedInTheRoomOfAnother) {
   Checkpoint checkpoint(options_, "key");
-  std::vector<int> state(1000);
-  for (int i = 0; i < 3; ++i) {
-    state.assign(1000, i);
-    checkpoint.store({0, 0}, std::span<const int>(state));
+  for (int i = 0; i < 5; ++i) {
+    store_state(checkpoint, i);
     store(checkpoint, 1);
+    EXPECT_EQ(state_of(checkpoint), i);
   }
-  EXPECT_LT(fs::file_size(path_), 2 * 4000u);
-  std::vector<int> read(1000);
-  EXPECT_TRUE(checkpoint.restore({0, 0}, std::span(read)));
-  EXPECT_EQ(read, state);
+  EXPECT_LT(fs::file_size(path_), 2 * 4000u + 3 * 500u);
   EXPECT_TRUE(has(checkpoint, 1));
+}
+
+// Whatever is torn while a state is written, there is one: the new or the one before.
+TEST_F(CheckpointTest, AKillWhileAStateIsReplacedLeavesTheOneBefore) {
+  std::vector<std::string> files;
+  for (int i = 0; i < 4; ++i) {
+    Checkpoint(options_, "key").store({0, 0}, std::span<const int>(std::vector<int>(1000, i)));
+    files.push_back(read_text_file(path_));
+  }
+  ASSERT_EQ(files[2].size(), files[3].size());
+  std::size_t older = 0;
+  for (std::size_t cut = 0; cut < files[3].size(); cut += 97) {
+    folder_.write("out.partial", files[3].substr(0, cut) + files[2].substr(cut));
+    const Checkpoint checkpoint(options_, "key");
+    const int state = state_of(checkpoint);
+    EXPECT_TRUE(state == 2 || state == 3) << state;
+    older += state == 2;
+  }
+  EXPECT_GT(older, 10u);
+}
+
+TEST_F(CheckpointTest, AStateMayChangeItsSize) {
+  {
+    Checkpoint checkpoint(options_, "key");
+    store_state(checkpoint, 1);
+    store(checkpoint, 1);
+    store_state(checkpoint, 2, 2000);
+    EXPECT_EQ(state_of(checkpoint), 2);
+  }
+  const Checkpoint checkpoint(options_, "key");
+  EXPECT_EQ(state_of(checkpoint), 2);
+  EXPECT_TRUE(has(checkpoint, 1));
+}
+
+TEST_F(CheckpointTest, ReleasedRoomIsUsedAgain) {
+  write_five();
+  const auto size = fs::file_size(path_);
+  {
+    Checkpoint checkpoint(options_, "key");
+    EXPECT_EQ(checkpoint.byte_count(3), 4 * (100u + 110 + 120 + 130 + 140));
+    checkpoint.release(3);
+    EXPECT_EQ(checkpoint.byte_count(3), 0u);
+    EXPECT_FALSE(has(checkpoint, 0));
+    for (std::uint32_t i = 0; i < 5; ++i) {
+      checkpoint.store({4, i}, std::span<const int>(result(i)));
+    }
+  }
+  EXPECT_EQ(fs::file_size(path_), size);
+  EXPECT_EQ(found(), std::vector<bool>(5, false));
+  EXPECT_EQ(Checkpoint(options_, "key").byte_count(4), 4 * (100u + 110 + 120 + 130 + 140));
 }
 
 TEST_F(CheckpointTest, AnotherKeyStartsAnew) {
@@ -110,8 +169,13 @@ TEST_F(CheckpointTest, ATornEndIsIgnored) {
     EXPECT_GE(count, most);
     most = count;
     if (size % 10 == 0) {
-      write_five();
-      EXPECT_EQ(read_text_file(path_), whole);
+      {
+        Checkpoint checkpoint(options_, "key");
+        for (std::uint32_t i = 0; i < 5; ++i) {
+          if (!has(checkpoint, i)) store(checkpoint, i);
+        }
+      }
+      EXPECT_TRUE(read_text_file(path_) == whole) << size;
     }
   }
   EXPECT_EQ(most, 4u);
