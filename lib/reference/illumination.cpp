@@ -14,8 +14,8 @@ constexpr std::size_t kBlock = 64;  // directions evaluated together; 64 KiB of 
 void BandLimitedIllumination::radiance(std::span<const Vec3> directions,
                                        std::span<Vec3> radiance) const {
   std::array<float, kBlock> x, y, z;
-  std::array<float, kBlock * sh::coefficient_count(sh::kMaxBandCount)> basis;
-  const auto coefficient_count = static_cast<std::size_t>(sh::coefficient_count(light_.band_count));
+  std::array<float, kBlock * sh::row_size(sh::kMaxBandCount)> basis;
+  const auto coefficient_count = sh::row_size(light_.band_count);
   for (std::size_t begin = 0; begin < directions.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, directions.size() - begin);
     for (std::size_t i = 0; i < count; ++i) {

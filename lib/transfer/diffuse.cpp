@@ -14,6 +14,7 @@
 #include "sh/basis.h"
 #include "transfer/buried.h"
 #include "transfer/clamped_cosine.h"
+#include "transfer/header.h"
 #include "transfer/limits.h"
 #include "transfer/reflection.h"
 #include "transfer/resume.h"
@@ -58,19 +59,11 @@ class DiffuseBake {
         index_(scene),
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
         coefficient_count_(sh::row_size(options.band_count)),
-        checkpoint_(options.checkpoint, checkpoint_key(scene, options)) {
+        checkpoint_(options.checkpoint, checkpoint_key(scene, options)),
+        signal_(make_header(scene, options)) {
     if (options.shadowed) index_.build_for_shadow_rays(options.ray_count);
     stats_.build_seconds = watch_.seconds();
-    signal_.band_count = options.band_count;
     signal_.channel_count = choose_channel_count(scene, options.channels, options.bounce_count > 0);
-    signal_.seed = options.seed;
-    signal_.ray_count = options.shadowed ? options.ray_count : 0;
-    signal_.bounce_count = options.bounce_count;
-    signal_.tool_version = PRTKIT_VERSION;
-    signal_.mesh_hash = mesh::mesh_hash(scene);
-    for (const mesh::Primitive& primitive : scene.primitives) {
-      signal_.blocks.push_back({primitive.name, primitive.mesh.vertex_count()});
-    }
     row_size_ = static_cast<std::size_t>(signal_.dimension());
     signal_.values.resize(index_.vertex_count() * row_size_);
     buried_.resize(index_.vertex_count());
@@ -202,16 +195,19 @@ class DiffuseBake {
                       block_count(coefficient_count_, columns) *
                           static_cast<std::size_t>(options_.bounce_count) * index_.vertex_count(),
                       "vertices");
+    double resumed = 0.0;
     for (std::size_t first = 0; first < coefficient_count_; first += columns) {
-      bounce_columns(repair, reflection, first, columns, progress);
+      resumed += bounce_columns(repair, reflection, first, columns, progress);
     }
+    note_resumed_bounces(resumed / static_cast<double>(coefficient_count_), stats_);
     stats_.bounce_seconds = watch.seconds();
   }
 
   /// One state holds the sum of the bounces so far, the last bounce, and their number: what the
-  /// checkpoint keeps, at the end and, in long computations, now and then before.
-  void bounce_columns(const BuriedRepair& repair, const Reflection& reflection, std::size_t first,
-                      std::size_t columns, Progress& progress) {
+  /// checkpoint keeps, at the end and, in long computations, now and then before. Returns how many
+  /// columns' worth of bounces it had.
+  double bounce_columns(const BuriedRepair& repair, const Reflection& reflection, std::size_t first,
+                        std::size_t columns, Progress& progress) {
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t used = std::min(columns, coefficient_count_ - first);
     const std::size_t size = index_.vertex_count() * channels * columns;
@@ -227,6 +223,7 @@ class DiffuseBake {
       for_each_segment([&](const float* value, float* s) { std::copy_n(value, used, s); });
       std::copy_n(sum, size, field);
     }
+    const double resumed = static_cast<double>(used) * double{done} / options_.bounce_count;
     progress.advance(static_cast<std::size_t>(done) * index_.vertex_count());
     Stopwatch since_stored;
     while (done < static_cast<float>(options_.bounce_count)) {
@@ -242,6 +239,7 @@ class DiffuseBake {
       progress.advance(index_.vertex_count());
     }
     for_each_segment([&](float* value, const float* s) { std::copy_n(s, used, value); });
+    return resumed;
   }
 
   void multiply_albedo() {

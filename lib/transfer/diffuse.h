@@ -57,6 +57,7 @@ struct DiffuseStats {
   std::size_t buried_vertex_count = 0;      ///< detected
   std::size_t unrepaired_vertex_count = 0;  ///< of these, connected to no vertex that is not
   std::size_t resumed_vertex_count = 0;     ///< traced by an interrupted run before this one
+  double resumed_bounce_share = 0.0;        ///< of the bounces, done by it
   std::uint64_t rays_cast = 0;              ///< occlusion and closest hit, in this run
   double rays_per_second = 0.0;             ///< of the shadow pass
   double build_seconds = 0.0;               ///< the shadow tree, the order of vertices

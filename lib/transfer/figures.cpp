@@ -10,6 +10,7 @@ void report_figures(Report& report, const DiffuseStats& stats,
   json["vertex_count"] = signal.vertex_count();
   json["channel_count"] = signal.channel_count;
   json["resumed_vertex_count"] = stats.resumed_vertex_count;
+  json["resumed_bounce_share"] = stats.resumed_bounce_share;
   json["rays_cast"] = stats.rays_cast;
   json["rays_per_second"] = stats.rays_per_second;
   json["buried_vertex_count"] = stats.buried_vertex_count;

@@ -16,9 +16,11 @@
 #include "sh/basis.h"
 #include "sh/rotation.h"
 #include "transfer/channels.h"
+#include "transfer/header.h"
 #include "transfer/limits.h"
 #include "transfer/matrix_kernels.h"
 #include "transfer/reflection.h"
+#include "transfer/resume.h"
 
 namespace prt::transfer {
 
@@ -41,10 +43,9 @@ bool has_coloured_specular(const mesh::Scene& scene) {
   });
 }
 
-signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions& options) {
+signal::TransferSignal make_matrix_header(const mesh::Scene& scene, const MatrixOptions& options) {
   check_options(options);
-  signal::TransferSignal header;
-  header.band_count = options.band_count;
+  signal::TransferSignal header = make_header(scene, options);
   header.row_count = options.row_count;
   header.channel_count = choose_channel_count(scene, options.channels, false);
   if (options.channels == ChannelMode::automatic && options.brdf == "from-material" &&
@@ -59,15 +60,14 @@ signal::TransferSignal make_header(const mesh::Scene& scene, const MatrixOptions
                  .advice = "Ask for fewer with --bands or --rows."});
   }
   header.brdf = options.brdf;
-  header.seed = options.seed;
-  header.ray_count = options.shadowed ? options.ray_count : 0;
-  header.bounce_count = options.bounce_count;
-  header.tool_version = PRTKIT_VERSION;
-  header.mesh_hash = mesh::mesh_hash(scene);
-  for (const mesh::Primitive& primitive : scene.primitives) {
-    header.blocks.push_back({primitive.name, primitive.mesh.vertex_count()});
-  }
   return header;
+}
+
+/// All that decides the values.
+std::string checkpoint_key(const mesh::Scene& scene, const MatrixOptions& o, int channel_count) {
+  return fmt::format("matrix {} {} {} {} {} {} {} {} {} {} {}", mesh::scene_hash(scene), o.brdf,
+                     o.band_count, o.row_count, o.ray_count, o.bounce_count, o.bounce_ray_count,
+                     o.shadowed, channel_count, o.seed, static_cast<int>(o.projection));
 }
 
 }  // namespace
@@ -76,11 +76,12 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
                                DiffuseStats& stats)
     : scene_(scene),
       stats_(stats),
-      header_(make_header(scene, options)),
+      header_(make_matrix_header(scene, options)),
       vertex_offsets_(scene.vertex_offsets()),
       triple_(triple_products(options.band_count)),
       surfaces_(scene, {options.brdf, options.band_count, options.row_count, options.projection},
-                header_.channel_count) {
+                header_.channel_count),
+      checkpoint_(options.checkpoint, checkpoint_key(scene, options, header_.channel_count)) {
   stats_ = {};
   const std::size_t n = sh::row_size(options.band_count);
   const auto channels = static_cast<std::size_t>(header_.channel_count);
@@ -91,10 +92,9 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
   index_ = std::make_unique<SceneIndex>(scene);
   if (options.shadowed) index_->build_for_shadow_rays(options.ray_count);
   stats_.build_seconds = watch.seconds();
-  visibility_ = compute_visibility(*index_,
-                                   {2 * options.band_count - 1, options.ray_count, options.shadowed,
-                                    options.seed, options.checkpoint},
-                                   stats_);
+  visibility_ = compute_visibility(
+      *index_, {2 * options.band_count - 1, options.ray_count, options.shadowed, options.seed},
+      checkpoint_, stats_);
   if (options.bounce_count > 0) {
     bounce(options);
   } else {
@@ -102,7 +102,8 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
   }
 }
 
-// Fields of 0, 1, … bounces, all but the last.
+// Fields of 0, 1, … bounces, all but the last. Of those that an interrupted run has left the last
+// whole one is needed, and what there is of the next.
 void MatrixTransfer::bounce(const MatrixOptions& options) {
   const Stopwatch watch;
   index_->engine();
@@ -120,31 +121,58 @@ void MatrixTransfer::bounce(const MatrixOptions& options) {
   std::unique_ptr<ExitField> spare = options.bounce_count > 1 ? make_field() : nullptr;
   Progress progress("bounces", vertex_count * static_cast<std::size_t>(options.bounce_count),
                     "vertices");
-  for (int b = 0; b < options.bounce_count; ++b) {
-    fill_field(*next, progress);
+  int b = options.bounce_count - 1;
+  while (b > 0 && checkpoint_.byte_count(field_stage(b)) < next->byte_count()) --b;
+  note_resumed(b, *next);
+  progress.advance(static_cast<std::size_t>(b) * vertex_count);
+  for (; b < options.bounce_count; ++b) {
+    fill_field(b, *next, progress);
+    if (b > 0) checkpoint_.release(field_stage(b - 1));
     std::swap(field_, next);
     if (!next) next = std::move(spare);
   }
   stats_.bounce_seconds = watch.seconds();
 }
 
-void MatrixTransfer::fill_field(ExitField& field, Progress& progress) {
-  const std::size_t row_size = field.row_size();
+/// From the field that is restored first on.
+void MatrixTransfer::note_resumed(int first, const ExitField& field) {
+  double done = first;
+  for (int b = first; b < header_.bounce_count; ++b) {
+    done += static_cast<double>(checkpoint_.byte_count(field_stage(b))) /
+            static_cast<double>(field.byte_count());
+  }
+  const std::size_t output_bytes =
+      header_.vertex_count() * static_cast<std::size_t>(header_.dimension()) * sizeof(float);
+  done +=
+      static_cast<double>(checkpoint_.byte_count(kOutputStage)) / static_cast<double>(output_bytes);
+  note_resumed_bounces(done / (header_.bounce_count + 1), stats_);
+}
+
+void MatrixTransfer::fill_field(int bounce, ExitField& field, Progress& progress) {
+  const std::size_t row_size = field.row_size(), block = reflection_->block_size();
   std::atomic<std::uint64_t> rays{0};
-  parallel_for(
-      index_->vertex_count(), reflection_->block_size(), [&](std::size_t begin, std::size_t end) {
-        std::vector<float> rows((end - begin) * row_size);
-        rays += compute_block(
-            {&index_->vertex_order()[begin], end - begin},
-            [&](std::size_t i, const float* matrix) { to_field(matrix, &rows[i * row_size]); });
-        field.write(begin, rows);
-        progress.advance(end - begin);
-      });
+  parallel_for(index_->vertex_count(), block, [&](std::size_t begin, std::size_t end) {
+    const Checkpoint::Name name{field_stage(bounce), static_cast<std::uint32_t>(begin / block)};
+    std::vector<std::uint16_t> halfs((end - begin) * row_size);
+    if (!checkpoint_.restore(name, std::span(halfs))) {
+      std::vector<float> rows(halfs.size());
+      rays += compute_block(
+          {&index_->vertex_order()[begin], end - begin},
+          [&](std::size_t i, const float* matrix) { to_field(matrix, &rows[i * row_size]); });
+      float_to_half(rows.data(), halfs.data(), halfs.size());
+      checkpoint_.store(name, std::span<const std::uint16_t>(halfs));
+    }
+    field.write(begin, halfs);
+    progress.advance(end - begin);
+  });
   stats_.rays_cast += rays;
 }
 
 void MatrixTransfer::compute(std::size_t first, std::size_t count, std::span<float> values) {
   const Stopwatch watch;
+  // Without bounces matrices are made about as fast as they are read.
+  const Checkpoint::Name name{kOutputStage, static_cast<std::uint32_t>(first)};
+  if (reflection_ && checkpoint_.restore(name, values)) return;
   std::vector<std::uint32_t> vertices(count);
   std::iota(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(first));
   if (reflection_) {
@@ -165,6 +193,7 @@ void MatrixTransfer::compute(std::size_t first, std::size_t count, std::span<flo
                        }
                      });
                });
+  if (reflection_) checkpoint_.store(name, std::span<const float>(values));
   stats_.rays_cast += rays;
   (reflection_ ? stats_.bounce_seconds : stats_.matrix_seconds) += watch.seconds();
 }

@@ -49,7 +49,7 @@ struct MatrixOptions {
   /// Where the fields of bounces are: half of the matrices' size, for more than one bounce all of
   /// it.
   std::filesystem::path scratch_folder = std::filesystem::temp_directory_path();
-  CheckpointOptions checkpoint{};  ///< where to keep what shadow rays found
+  CheckpointOptions checkpoint{};  ///< where to keep what is done, for a run that continues it
 };
 
 class MatrixTransfer {
@@ -82,7 +82,8 @@ class MatrixTransfer {
   using MatrixSink = std::function<void(std::size_t i, const float* matrix)>;
 
   void bounce(const MatrixOptions& options);
-  void fill_field(ExitField& field, Progress& progress);
+  void note_resumed(int first, const ExitField& field);
+  void fill_field(int bounce, ExitField& field, Progress& progress);
   std::uint64_t compute_block(std::span<const std::uint32_t> vertices,
                               const MatrixSink& sink) const;
   void reflect(std::span<const std::uint32_t> vertices, const std::vector<float>& moments,
@@ -98,6 +99,7 @@ class MatrixTransfer {
   Visibility visibility_;
   std::vector<float> triple_;  // triple_products()
   MatrixSurfaces surfaces_;
+  Checkpoint checkpoint_;
   std::unique_ptr<MatrixReflection> reflection_;  // these two with bounces only
   std::unique_ptr<ExitField> field_;              // of all bounces but the last
   std::size_t incident_channel_count_ = 1;        // without bounces all channels receive the same

@@ -27,8 +27,7 @@ ExitBasis::ExitBasis(std::span<const int> functions)
     ++function_count;
   }
   from_sh.resize(row_count * function_count);
-  from_directions.resize(static_cast<std::size_t>(sh::coefficient_count(band_count)) *
-                         function_count);
+  from_directions.resize(sh::row_size(band_count) * function_count);
   for (std::size_t f = 0; f < function_count; ++f) {
     const double root = std::sqrt(values[f]);
     for (std::size_t i = 0; i < row_count; ++i) {
@@ -77,10 +76,8 @@ ExitField::ExitField(const std::filesystem::path& folder, std::size_t vertex_cou
 
 ExitField::~ExitField() { close(descriptor_); }
 
-void ExitField::write(std::size_t first, std::span<const float> values) {
-  assert(first * row_size_ + values.size() <= vertex_count_ * row_size_);
-  std::vector<std::uint16_t> halfs(values.size());
-  float_to_half(values.data(), halfs.data(), halfs.size());
+void ExitField::write(std::size_t first, std::span<const std::uint16_t> halfs) {
+  assert(first * row_size_ + halfs.size() <= vertex_count_ * row_size_);
   const char* from = reinterpret_cast<const char*>(halfs.data());
   std::size_t left = halfs.size() * sizeof(std::uint16_t);
   auto offset = static_cast<off_t>(first * row_size_ * sizeof(std::uint16_t));

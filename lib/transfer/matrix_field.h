@@ -38,9 +38,9 @@ class ExitField {
   std::size_t row_size() const { return row_size_; }
   std::size_t byte_count() const { return vertex_count_ * row_size_ * sizeof(std::uint16_t); }
 
-  /// Rows from `first` on, as many as there are values for. From any thread. Throws Error (failed).
-  void write(std::size_t first, std::span<const float> values);
-  /// The same, as half floats.
+  /// Rows of half floats from `first` on, as many as there are values for. From any thread. Throw
+  /// Error (failed).
+  void write(std::size_t first, std::span<const std::uint16_t> halfs);
   void read(std::size_t first, std::span<std::uint16_t> halfs) const;
 
  private:

@@ -37,7 +37,7 @@ MatrixReflection::MatrixReflection(const SceneIndex& index, const Visibility& vi
       directions_(std::move(directions)),
       basis_(std::move(basis)),
       band_count_(band_count),
-      function_count_(static_cast<std::size_t>(sh::coefficient_count(band_count))),
+      function_count_(sh::row_size(band_count)),
       column_count_(static_cast<std::size_t>(channel_count) * function_count_),
       direction_basis_(directions_.count() * function_count_),
       lobe_(sh::disk_lobe(band_count, std::numbers::pi / 2)),
@@ -174,7 +174,7 @@ class MatrixReflection::Gather {
       }
     }
     const ExitBasis& basis = owner_.basis_;
-    const auto depth = static_cast<std::size_t>(sh::coefficient_count(basis.band_count));
+    const auto depth = sh::row_size(basis.band_count);
     sh_.resize(depth * kBatch);
     sh::evaluate_batch(basis.band_count, x_.data(), y_.data(), z_.data(), end - begin, sh_.data(),
                        kBatch);

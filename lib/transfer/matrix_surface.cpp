@@ -80,7 +80,7 @@ MatrixSurfaces::MatrixSurfaces(const mesh::Scene& scene, const SurfaceOptions& o
       options_(options),
       channel_count_(channel_count),
       operator_size_(static_cast<std::size_t>(options.row_count) *
-                     static_cast<std::size_t>(sh::coefficient_count(options.band_count))) {
+                     sh::row_size(options.band_count)) {
   if (const auto brdf = brdf::parse_brdf(options.brdf)) {
     named_ = make_operator(*brdf);
     note_loss(*brdf, options.brdf);

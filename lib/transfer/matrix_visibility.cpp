@@ -1,7 +1,5 @@
 #include "transfer/matrix_visibility.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -23,23 +21,19 @@ namespace prt::transfer {
 
 namespace {
 
-std::string checkpoint_key(const mesh::Scene& scene, const VisibilityOptions& o) {
-  return fmt::format("visibility {} {} {} {} {}", mesh::scene_hash(scene), o.band_count,
-                     o.ray_count, o.shadowed, o.seed);
-}
-
 class VisibilityPass {
  public:
-  VisibilityPass(const SceneIndex& index, const VisibilityOptions& options, DiffuseStats& stats)
+  VisibilityPass(const SceneIndex& index, const VisibilityOptions& options, Checkpoint& checkpoint,
+                 DiffuseStats& stats)
       : index_(index),
         options_(options),
+        checkpoint_(checkpoint),
         stats_(stats),
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
         count_(sh::row_size(options.band_count)),
         lobe_(sh::disk_lobe(options.band_count, std::numbers::pi / 2)),
         rows_(index.vertex_count() * count_),
-        buried_(index.vertex_count()),
-        checkpoint_(options.checkpoint, checkpoint_key(index.scene(), options)) {}
+        buried_(index.vertex_count()) {}
 
   Visibility run() {
     const Stopwatch watch;
@@ -115,20 +109,20 @@ class VisibilityPass {
 
   const SceneIndex& index_;
   const VisibilityOptions& options_;
+  Checkpoint& checkpoint_;
   DiffuseStats& stats_;
   const Directions directions_;
   const std::size_t count_;
   const std::vector<double> lobe_;  // the hemisphere about +Z
   std::vector<float> rows_;
   std::vector<std::uint8_t> buried_;
-  Checkpoint checkpoint_;
 };
 
 }  // namespace
 
 Visibility compute_visibility(const SceneIndex& index, const VisibilityOptions& options,
-                              DiffuseStats& stats) {
-  return VisibilityPass(index, options, stats).run();
+                              Checkpoint& checkpoint, DiffuseStats& stats) {
+  return VisibilityPass(index, options, checkpoint, stats).run();
 }
 
 // Yᵀ W (Y ∘ Y) over a product rule that is exact for polynomials of degree 4 (n - 1), which a

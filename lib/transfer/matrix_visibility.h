@@ -17,7 +17,6 @@ struct VisibilityOptions {
   int ray_count = 2048;  ///< per vertex, over its hemisphere (on average)
   bool shadowed = true;  ///< false: no rays, the hemisphere alone
   std::uint64_t seed = 1;
-  CheckpointOptions checkpoint{};  ///< where to keep what is done, for a run that continues it
 };
 
 struct Visibility {
@@ -30,9 +29,9 @@ struct Visibility {
 };
 
 /// The same bytes for any number of threads. Sets everything in `stats` but the bounces and
-/// build_seconds.
+/// build_seconds. What rays found is kept in the checkpoint.
 Visibility compute_visibility(const SceneIndex& index, const VisibilityOptions& options,
-                              DiffuseStats& stats);
+                              Checkpoint& checkpoint, DiffuseStats& stats);
 
 /// C of T = V C: row k, column i·n² + j holds ∫ y_k y_i y_j over the sphere, for (2n-1)² rows and
 /// n⁴ columns, n = band_count up to kMaxMatrixBandCount. By exact quadrature.

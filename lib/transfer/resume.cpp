@@ -57,4 +57,11 @@ void store_traced(Checkpoint& checkpoint, const SceneIndex& index, const TracedR
   checkpoint.store(block_name(begin), std::span<const float>(values));
 }
 
+void note_resumed_bounces(double share, DiffuseStats& stats) {
+  stats.resumed_bounce_share = share;
+  if (share > 0.0) {
+    log::info("continuing an interrupted run, which did {:.0f}% of the bounces", 100.0 * share);
+  }
+}
+
 }  // namespace prt::transfer

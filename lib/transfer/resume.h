@@ -1,5 +1,5 @@
 // What a bake keeps in its checkpoint (core/checkpoint.h): what the rays of each block of vertices
-// found, and the fields of the bounces.
+// found, the fields of the bounces and, of matrices with bounces, blocks of the output.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,17 @@
 
 namespace prt::transfer {
 
-enum Stage : std::uint32_t { kTraceStage, kBounceStage };
+enum Stage : std::uint32_t {
+  kTraceStage,
+  kBounceStage,
+  kOutputStage,
+  kFieldStage  ///< of matrices: field_stage(0)
+};
+
+/// Of the field of so many bounces.
+constexpr std::uint32_t field_stage(int bounce_count) {
+  return kFieldStage + static_cast<std::uint32_t>(bounce_count);
+}
 
 /// The first `count` of the `stride` values of each vertex's row, and whether it is buried.
 struct TracedRows {
@@ -29,5 +39,8 @@ std::vector<std::uint8_t> restore_traced(const Checkpoint& checkpoint, const Sce
 /// Keeps the block that begins at place `begin` of vertex_order().
 void store_traced(Checkpoint& checkpoint, const SceneIndex& index, const TracedRows& traced,
                   std::size_t begin);
+
+/// Tells in `stats` and the log what share of the bounces need not be done.
+void note_resumed_bounces(double share, DiffuseStats& stats);
 
 }  // namespace prt::transfer

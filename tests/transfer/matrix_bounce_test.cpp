@@ -7,6 +7,7 @@
 #include "sh/zonal.h"
 #include "transfer/hemisphere.h"
 #include "transfer/matrices.h"
+#include "transfer/matrix_kernels.h"
 #include "transfer/reflection.h"
 
 namespace prt::transfer {
@@ -73,7 +74,8 @@ TEST(TransferMatrixBounce, ClosedRoomOfConstantRadianceStaysSoForEveryBrdf) {
   const TriangleMesh& mesh = scene.primitives[0].mesh;
   const SceneIndex index(scene);
   DiffuseStats stats;
-  const Visibility visibility = compute_visibility(index, {9, 512, true, 1}, stats);
+  Checkpoint no_checkpoint({}, "");
+  const Visibility visibility = compute_visibility(index, {9, 512, true, 1}, no_checkpoint, stats);
   const MatrixReflection reflection(index, visibility, make_directions(256, 1),
                                     ExitBasis(sh::hemisphere_functions(24)), 5, 1);
   ExitField field(std::filesystem::temp_directory_path(), mesh.vertex_count(),
@@ -83,7 +85,9 @@ TEST(TransferMatrixBounce, ClosedRoomOfConstantRadianceStaysSoForEveryBrdf) {
   for (std::size_t f = 0; f < basis.function_count; ++f) {
     exit[f * 25] = basis.from_sh[f] * static_cast<float>(2 * std::sqrt(kPi));
   }
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) field.write(v, exit);
+  std::vector<std::uint16_t> halfs(exit.size());
+  float_to_half(exit.data(), halfs.data(), halfs.size());
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) field.write(v, halfs);
 
   const auto whole = sh::disk_lobe(5, kPi / 2);
   std::vector<std::uint32_t> vertices(mesh.vertex_count());

@@ -70,8 +70,11 @@ TEST(TransferMatrix, VisibilityBandsHoldTheDirectIntegral) {
   const SceneIndex index(scene);
   constexpr int kBands = 4;
   DiffuseStats stats;
-  const auto rows = compute_visibility(index, {2 * kBands - 1, 1024, true, 5}, stats).rows;
-  const auto whole = compute_visibility(index, {2 * kBands - 1, 1024, false, 5}, stats).rows;
+  Checkpoint no_checkpoint({}, "");
+  const auto rows =
+      compute_visibility(index, {2 * kBands - 1, 1024, true, 5}, no_checkpoint, stats).rows;
+  const auto whole =
+      compute_visibility(index, {2 * kBands - 1, 1024, false, 5}, no_checkpoint, stats).rows;
   const auto triple = triple_products(kBands);
   const Directions directions = make_directions(2048, 5);
   Hemisphere hemisphere(index, directions);

@@ -105,26 +105,87 @@ TEST_F(ResumeTest, OtherOptionsOrAnotherSceneStartAnew) {
   EXPECT_EQ(resumed(scene, options_), 0u);
 }
 
-TEST(MatrixResume, ContinuesFromAnyPoint) {
-  const TemporaryFolder folder;
-  const mesh::Scene scene = coloured_box(6);
-  MatrixOptions options{.brdf = "lambert", .band_count = 2, .row_count = 4, .ray_count = 64};
-  DiffuseStats whole;
-  const auto expected = compute_matrices(scene, options, whole);
-  options.checkpoint = {folder / "out.partial", 0.0};
-  DiffuseStats first;
-  compute_matrices(scene, options, first);
-  const std::string kept = read_text_file(folder / "out.partial");
-  std::size_t resumed = 0;
-  for (std::size_t step = 0; step <= 3; ++step) {
-    folder.write("out.partial", kept.substr(0, kept.size() * step / 3));
-    DiffuseStats stats;
-    EXPECT_EQ(compute_matrices(scene, options, stats).values, expected.values);
-    EXPECT_GE(stats.resumed_vertex_count, resumed);
-    resumed = stats.resumed_vertex_count;
+/// Asks for the matrices of a scene in three blocks, as a file does, and stops before the given
+/// one.
+std::vector<float> matrices(const mesh::Scene& scene, const MatrixOptions& options,
+                            DiffuseStats& stats, std::size_t block_count = 3) {
+  MatrixTransfer transfer(scene, options, stats);
+  const std::size_t count = transfer.header().vertex_count(), block = (count + 2) / 3;
+  const auto dimension = static_cast<std::size_t>(transfer.header().dimension());
+  std::vector<float> values(count * dimension);
+  for (std::size_t b = 0; b < block_count; ++b) {
+    const std::size_t first = b * block, size = std::min(block, count - first);
+    transfer.compute(first, size, std::span(values).subspan(first * dimension, size * dimension));
   }
-  EXPECT_EQ(resumed, expected.vertex_count());
+  return values;
 }
+
+class MatrixResume : public testing::TestWithParam<int> {
+ protected:
+  const TemporaryFolder folder_;
+  const fs::path path_ = folder_ / "out.partial";
+  const mesh::Scene scene_ = coloured_box(6);
+  MatrixOptions options_{.brdf = "phong:3",
+                         .band_count = 2,
+                         .row_count = 4,
+                         .ray_count = 64,
+                         .bounce_count = GetParam(),
+                         .scratch_folder = folder_.path()};
+};
+
+TEST_P(MatrixResume, ContinuesFromAnyPoint) {
+  DiffuseStats whole;
+  const std::vector<float> expected = matrices(scene_, options_, whole);
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+  options_.checkpoint = {path_, 0.0};
+  DiffuseStats first;
+  EXPECT_EQ(matrices(scene_, options_, first), expected);
+  const std::string kept = read_text_file(path_);
+  DiffuseStats last;
+  for (std::size_t step = 0; step <= 6; ++step) {
+    folder_.write("out.partial", kept.substr(0, kept.size() * step / 6));
+    DiffuseStats stats;
+    EXPECT_EQ(matrices(scene_, options_, stats), expected);
+    EXPECT_GE(stats.resumed_vertex_count, last.resumed_vertex_count);
+    EXPECT_GE(stats.resumed_bounce_share, last.resumed_bounce_share);
+    EXPECT_LE(fs::file_size(path_), kept.size() * 3 / 2);
+    last = stats;
+  }
+  EXPECT_EQ(last.resumed_vertex_count, scene_.vertex_count());
+  EXPECT_LT(last.rays_cast, whole.rays_cast / 10);
+  EXPECT_NEAR(last.resumed_bounce_share, GetParam() > 0 ? 1.0 : 0.0, 1e-9);
+}
+
+TEST_P(MatrixResume, AnInterruptedRunIsContinuedAtTheBlockWhereItStopped) {
+  DiffuseStats whole, stats;
+  const std::vector<float> expected = matrices(scene_, options_, whole);
+  options_.checkpoint = {path_, 0.0};
+  matrices(scene_, options_, stats, 2);
+  EXPECT_EQ(matrices(scene_, options_, stats), expected);
+  const int parts = GetParam() + 1;
+  EXPECT_NEAR(stats.resumed_bounce_share, GetParam() > 0 ? 1.0 - 1.0 / 3 / parts : 0.0, 0.01);
+}
+
+TEST_P(MatrixResume, OtherOptionsStartAnew) {
+  options_.checkpoint = {path_, 0.0};
+  DiffuseStats stats;
+  matrices(scene_, options_, stats);
+  const auto is_resumed = [&](const auto& change) {
+    MatrixOptions options = options_;
+    change(options);
+    options.checkpoint.after_seconds = 1e9;  // what is there stays
+    matrices(scene_, options, stats);
+    return stats.resumed_vertex_count > 0 || stats.resumed_bounce_share > 0;
+  };
+  EXPECT_TRUE(is_resumed([](MatrixOptions&) {}));
+  EXPECT_FALSE(is_resumed([](MatrixOptions& o) { o.brdf = "phong:4"; }));
+  EXPECT_FALSE(is_resumed([](MatrixOptions& o) { o.row_count = 3; }));
+  EXPECT_FALSE(is_resumed([](MatrixOptions& o) { ++o.bounce_count; }));
+  EXPECT_FALSE(is_resumed([](MatrixOptions& o) { o.channels = ChannelMode::one; }));
+  EXPECT_FALSE(is_resumed([](MatrixOptions& o) { o.seed = 2; }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Bounces, MatrixResume, testing::Values(0, 1, 3));
 
 }  // namespace
 }  // namespace prt::transfer
