@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/checkpoint.h"
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "compress/job.h"
@@ -122,6 +123,7 @@ int main(int argc, char** argv) {
     job.seed = tool.common().seed;
     job.no_clobber = tool.common().no_clobber;
     compress::check(job);
+    if (!job.output.empty()) job.checkpoint = cli::checkpoint_beside(job.output);
     cli::check_paths({job.model, job.transfer, job.signal, job.coefficient_weights},
                      {{job.output, {job.signal.empty() ? ".glb" : ".npz"}, job.model}},
                      tool.common());

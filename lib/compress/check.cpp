@@ -52,6 +52,11 @@ void check(const Job& job) {
     reject("--max-components is for --method adaptive", "Leave it out, or take that method.");
   }
   const bool is_bounded = job.bound.max_error || job.bound.max_bytes;
+  const int average = job.component_count.value_or(cpca::Options().component_count);
+  if (!is_bounded && job.max_component_count > 0 && average > job.max_component_count) {
+    reject(fmt::format("--components {}, the average, is above --max-components", average),
+           "Ask for fewer with --components.");
+  }
   if (job.bound.max_error && !(*job.bound.max_error > 0.0)) {
     reject("--max-error has to be above 0", "0.01 is one percent.");
   }

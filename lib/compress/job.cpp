@@ -11,6 +11,7 @@
 #include "compress/scaling.h"
 #include "compress/signal.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "cpca/report.h"
 #include "gltf/document.h"
@@ -95,9 +96,9 @@ cpca::StorageCost cost_in_file(const Job& job) {
 /// Of the largest error of a point reclassification takes only what is left.
 cpca::Bound bound_of_encoder(const Job& job) {
   cpca::Bound bound = job.bound;
-  if (!job.signal.empty()) return bound;
-  bound.cost = cost_in_file(job);
-  if (!bound.max_error) return bound;
+  if (job.signal.empty()) bound.cost = cost_in_file(job);
+  if (job.max_component_count > 0) bound.cost.max_component_count = job.max_component_count;
+  if (!bound.max_error || !job.signal.empty()) return bound;
   const bool spends = !job.storage.is_incoherent && bound.norm == cpca::Norm::rmse;
   const double budget = spends ? job.storage.coherence.error_budget : 0.0;
   *bound.max_error /= std::sqrt((1.0 + budget) * (1.0 + cpca::kMaxAddedError));
@@ -112,6 +113,7 @@ nlohmann::ordered_json to_json(const cpca::Found& found) {
                       {"relative_error", trial.error},
                       {"bytes", trial.bytes},
                       {"warm", trial.is_warm},
+                      {"resumed", trial.is_resumed},
                       {"seconds", trial.seconds}});
   }
   return {{"sampled_points", found.sampled_count},
@@ -120,17 +122,34 @@ nlohmann::ordered_json to_json(const cpca::Found& found) {
           {"trials", trials}};
 }
 
+/// All that decides the encoding, of a scaled signal.
+std::string checkpoint_key(const Job& job, const Input& input, const cpca::Options& o,
+                           const cpca::Bound& bound) {
+  Hasher signal, weights;
+  signal.add(std::span<const float>(input.transfer.values));
+  weights.add(std::span<const float>(input.point_weights));
+  const auto number = [](const auto& n) { return n ? fmt::format("{}", *n) : "-"; };
+  return fmt::format(
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", job.method, signal.hex(),
+      input.dimension, weights.hex(), o.cluster_count, o.component_count, o.iterations, o.seed,
+      o.max_component_count, number(bound.max_error), number(bound.max_bytes),
+      static_cast<int>(bound.norm), bound.cost.bytes_per_point, bound.cost.bytes_per_weight,
+      bound.cost.weight_group, bound.cost.bytes_per_cluster, bound.cost.max_component_count);
+}
+
 cpca::Encoded encode(const Job& job, const Input& input, Report& report) {
   const cpca::Method method = job.method == "adaptive"    ? cpca::Method::adaptive
                               : job.method == "iterative" ? cpca::Method::iterative
                                                           : cpca::Method::fixed;
-  const cpca::Options options = make_options(job, input);
+  cpca::Options options = make_options(job, input);
+  const cpca::Bound bound = bound_of_encoder(job);
+  Checkpoint checkpoint(job.checkpoint, checkpoint_key(job, input, options, bound));
+  options.checkpoint = &checkpoint;
   const auto dimension = static_cast<int>(input.dimension);
   if (!job.bound.max_error && !job.bound.max_bytes) {
     return cpca::encode(method, input.transfer.values, dimension, options);
   }
-  cpca::Found found =
-      cpca::encode_within(bound_of_encoder(job), method, input.transfer.values, dimension, options);
+  cpca::Found found = cpca::encode_within(bound, method, input.transfer.values, dimension, options);
   log::info("the search took as long as {:.2f} encodings", found.cost);
   report.json()["search_cost"] = found.cost;
   report.json()["search"] = to_json(found);
@@ -272,6 +291,7 @@ void run(const Job& job, Report& report) {
       save_arrays(job.output, encoded.encoding, job.no_clobber);
     }
     report.add_output(job.output);
+    remove_checkpoint(job.checkpoint.path);
   }
   warn_of_size(report.json());
 }

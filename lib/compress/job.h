@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/checkpoint.h"
 #include "core/report.h"
 #include "cpca/encoder.h"
 #include "cpca/search.h"
@@ -27,6 +28,7 @@ struct Job {
   cpca::Bound bound;  ///< empty: the counts above
   cpca::StorageOptions storage;
   bool no_clobber = false;
+  CheckpointOptions checkpoint{};  ///< where to keep what is done, for a run that continues it
 };
 
 /// Throws Error (usage) for what cannot be meant together.

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/log.h"
 #include "cpca/allocation.h"
 #include "cpca/fit.h"
 #include "cpca/iterative_encoder.h"
+#include "cpca/kept.h"
 #include "cpca/stage_clock.h"
 
 namespace prt::cpca {
@@ -31,17 +33,31 @@ constexpr int kAlternations = 2;
 /// whose allocation, all within the budget, leaves the least error.
 class Adaptation {
  public:
-  Adaptation(IterativeEncoder& encoder, std::uint32_t most, std::size_t budget)
-      : clusterer_(encoder.clusterer()),
+  Adaptation(IterativeEncoder& encoder, const Options& options, std::uint32_t most,
+             std::size_t budget)
+      : options_(options),
+        clusterer_(encoder.clusterer()),
         tail_(encoder.space().tail()),
         most_(most),
-        budget_(budget) {}
-
-  std::vector<std::uint32_t> run(int count, std::vector<double>& errors) {
-    std::vector<std::uint32_t> best;
-    double least = std::numeric_limits<double>::infinity();
+        budget_(budget) {
     allocation_.counts = clusterer_.subspaces().used;
-    for (int i = 0; i < count; ++i) {
+  }
+
+  /// Goes on with the cycle that the checkpoint of the options holds; returns how many alternations
+  /// it has.
+  int restore() {
+    if (!restore_state(options_.checkpoint, name(), [&](Archive& from) { archive(from); }))
+      return 0;
+    log::info("continuing an interrupted run, which adapted {} times", errors_.size());
+    return static_cast<int>(errors_.size());
+  }
+
+  /// Returns the best labels.
+  std::vector<std::uint32_t> run(int count) {
+    for (int i = static_cast<int>(errors_.size()); i < count; ++i) {
+      if (i > 0 && i % kCycle == 0) {
+        store_state(options_.checkpoint, name(), [&](Archive& to) { archive(to); });
+      }
       // The first measures what the iterative method left, so that this is never worse.
       const bool is_first = i == 0;
       const bool is_tight = !is_first && i % kCycle <= kTight && i + kCycle - kTight <= count;
@@ -51,17 +67,31 @@ class Adaptation {
       // What a point that moves to a cluster of more vectors costs is taken from where it would
       // have saved allocation_.cost.
       const auto pass = clusterer_.classify(i % 5 == 0, static_cast<float>(allocation_.cost));
-      errors.push_back(pass.error_before + tail_);
-      if (!is_tight && pass.error_before < least) {
-        least = pass.error_before;
-        best = std::move(labels);
+      errors_.push_back(pass.error_before + tail_);
+      if (!is_tight && pass.error_before < least_) {
+        least_ = pass.error_before;
+        best_ = std::move(labels);
       }
       if (!is_first && !is_tight && pass.moved_count == 0) break;
     }
-    return best;
+    return std::move(best_);
   }
 
+  /// SE before each alternation.
+  const std::vector<double>& errors() const { return errors_; }
+
  private:
+  Checkpoint::Name name() const { return {options_.checkpoint_stage, 1}; }
+
+  void archive(Archive& archive) {
+    clusterer_.archive(archive);
+    archive.array(allocation_.counts);
+    archive.value(allocation_.cost);
+    archive.array(best_);
+    archive.value(least_);
+    archive.array(errors_);
+  }
+
   void allocate_vectors(bool is_tight) {
     const Subspaces& subspaces = clusterer_.subspaces();
     std::vector<double> variances(subspaces.cluster_count() * most_);
@@ -75,11 +105,15 @@ class Adaptation {
     clusterer_.set_used(allocation_.counts);
   }
 
+  const Options& options_;
   Clusterer& clusterer_;
   double tail_;
   std::uint32_t most_;
   std::size_t budget_;
   Allocation allocation_;
+  std::vector<std::uint32_t> best_;
+  double least_ = std::numeric_limits<double>::infinity();
+  std::vector<double> errors_;
 };
 
 /// Σ D_i² of the first vectors of the clusters.
@@ -159,15 +193,16 @@ Encoded encode_adaptive(std::span<const float> signal, int dimension, const Opti
     clock.finish("seeding");
     encoded.levels = encoder.run();
     clock.finish("clustering");
-    encoded.levels.push_back({.component_count = most.component_count, .errors = {}});
-    Adaptation adaptation(encoder, static_cast<std::uint32_t>(most.component_count), budget);
-    labels = adaptation.run(kAlternations * options.iterations, encoded.levels.back().errors);
+    Adaptation adaptation(encoder, options, static_cast<std::uint32_t>(most.component_count),
+                          budget);
+    encoded.resumed_iterations = encoder.resumed_iterations() + adaptation.restore();
+    labels = adaptation.run(kAlternations * options.iterations);
+    encoded.levels.push_back(
+        {.component_count = most.component_count, .errors = adaptation.errors()});
     encoded.flops = encoder.clusterer().flops();
     clock.finish("adaptation");
   }
-  for (const Level& level : encoded.levels) {
-    encoded.iterations += static_cast<int>(level.errors.size());
-  }
+  encoded.iterations = iteration_count(encoded.levels);
   encoded.encoding = fit(signal, dimension, std::move(labels), most);
   if (most.component_count > 0) trim(options.point_weights, budget, encoded.encoding);
   clock.finish("components");

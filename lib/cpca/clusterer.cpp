@@ -51,6 +51,19 @@ void Clusterer::set_used(std::span<const std::uint32_t> used) {
   std::copy(used.begin(), used.end(), subspaces_.used.begin());
 }
 
+void Clusterer::archive(Archive& archive) {
+  archive.value(subspaces_.dimension);
+  archive.array(subspaces_.values);
+  archive.array(subspaces_.used);
+  archive.array(subspaces_.held);
+  archive.array(subspaces_.variances);
+  archive.array(labels_);
+  archive.array(errors_);
+  archive.array(neighbours_);
+  archive.value(flops_);
+  if (archive.is_reading()) sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+}
+
 std::vector<Clusterer::Block> Clusterer::make_blocks() const {
   std::vector<Block> blocks;
   for (std::size_t k = 0; k < subspaces_.cluster_count(); ++k) {

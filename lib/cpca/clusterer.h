@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/archive.h"
 #include "cpca/clusters.h"
 #include "cpca/subspaces.h"
 
@@ -46,6 +47,9 @@ class Clusterer {
   void set_labels(std::span<const std::uint32_t> labels);
   /// The same points in other coordinates. Clusters keep their points and nothing else.
   void set_rows(const Rows& rows);
+
+  /// All that passes depend on but the rows, which must be the same.
+  void archive(Archive& archive);
 
   const Subspaces& subspaces() const { return subspaces_; }
   const PointsByCluster& points() const { return sorted_; }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/checkpoint.h"
 #include "cpca/encoding.h"
 
 namespace prt::cpca {
@@ -27,6 +28,9 @@ struct Options {
   /// Empty: 1 each.
   std::span<const float> point_weights = {};
   Start start = {};  ///< iterative encoders then begin with all vectors, in one level
+  /// Keeps what is done, for a run that continues it: results are of this stage.
+  Checkpoint* checkpoint = nullptr;
+  std::uint32_t checkpoint_stage = 0;
 };
 
 struct Stage {
@@ -42,9 +46,10 @@ struct Level {
 
 struct Encoded {
   Encoding encoding;
-  int iterations = 0;         ///< done
-  std::vector<Level> levels;  ///< of iterative encoders
-  double flops = 0.0;         ///< of the products of points with means, vectors and one another
+  int iterations = 0;          ///< done
+  int resumed_iterations = 0;  ///< of these, by an interrupted run
+  std::vector<Level> levels;   ///< of iterative encoders
+  double flops = 0.0;          ///< of the products of points with means, vectors and one another
   std::vector<Stage> stages;
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "core/log.h"
 #include "cpca/fit.h"
+#include "cpca/kept.h"
 #include "cpca/seeding.h"
 #include "cpca/stage_clock.h"
 
@@ -40,15 +42,43 @@ IterativeEncoder::IterativeEncoder(std::span<const float> signal, std::size_t di
           "iterations") {}
 
 std::vector<Level> IterativeEncoder::run() {
+  restore();
   if (options_.start.labels.empty()) {
-    for (int count = 0; count <= options_.component_count; ++count) run_level();
-  } else {
+    while (std::ssize(levels_) <= options_.component_count) {
+      run_level();
+      store();
+    }
+  } else if (levels_.empty()) {
     clusterer_.set_labels(options_.start.labels);
     space_.fit_to(options_.start.squared_error);
     move_to_space(options_.component_count);
     iterate_level(options_.component_count);
+    store();
   }
   return std::move(levels_);
+}
+
+void IterativeEncoder::archive(Archive& archive) {
+  space_.archive(archive);
+  if (archive.is_reading()) clusterer_.set_rows(space_.rows());
+  clusterer_.archive(archive);
+  cpca::archive(archive, levels_);
+}
+
+void IterativeEncoder::restore() {
+  if (!restore_state(options_.checkpoint, {options_.checkpoint_stage, 0},
+                     [&](Archive& from) { archive(from); })) {
+    return;
+  }
+  resumed_iterations_ = iteration_count(levels_);
+  progress_.advance(levels_.size() * static_cast<std::size_t>(options_.iterations));
+  log::info("continuing an interrupted run, which encoded with {} of {} components",
+            levels_.back().component_count, options_.component_count);
+}
+
+void IterativeEncoder::store() {
+  store_state(options_.checkpoint, {options_.checkpoint_stage, 0},
+              [&](Archive& to) { archive(to); });
 }
 
 const Level& IterativeEncoder::run_level() {
@@ -125,11 +155,10 @@ Encoded encode_iterative(std::span<const float> signal, int dimension, const Opt
     clock.finish("seeding");
     encoded.levels = encoder.run();
     encoded.flops = encoder.clusterer().flops();
+    encoded.resumed_iterations = encoder.resumed_iterations();
     labels = encoder.clusterer().labels();
   }
-  for (const Level& level : encoded.levels) {
-    encoded.iterations += static_cast<int>(level.errors.size());
-  }
+  encoded.iterations = iteration_count(encoded.levels);
   clock.finish("clustering");
   encoded.encoding = fit(signal, dimension, std::move(labels), options);
   clock.finish("components");

@@ -19,15 +19,21 @@ class IterativeEncoder {
   IterativeEncoder(std::span<const float> signal, std::size_t dimension, const Options& options,
                    std::size_t capacity);
 
-  /// Iterates at no vectors, one, up to options.component_count, or only there from a start.
+  /// Iterates at no vectors, one, up to options.component_count, or only there from a start. Goes
+  /// on after the last level that the checkpoint of the options holds.
   std::vector<Level> run();
   /// The next of these levels: no vectors, then one more each time.
   const Level& run_level();
 
   Clusterer& clusterer() { return clusterer_; }
   const WorkingSpace& space() const { return space_; }
+  /// That an interrupted run has done.
+  int resumed_iterations() const { return resumed_iterations_; }
 
  private:
+  void archive(Archive& archive);
+  void restore();
+  void store();
   void update(int count, int steps);
   void start_level(int count, double error);
   void iterate_level(int count);
@@ -40,6 +46,7 @@ class IterativeEncoder {
   WorkingSpace space_;
   Clusterer clusterer_;
   std::vector<Level> levels_;
+  int resumed_iterations_ = 0;
   Progress progress_;
 };
 

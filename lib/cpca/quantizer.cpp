@@ -4,6 +4,8 @@
 #include <cassert>
 #include <numeric>
 
+#include "core/archive.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "cpca/clusters.h"
@@ -41,8 +43,14 @@ class Quantizer {
     }
   }
 
-  Clustering run(int iterations) {
+  Clustering run(int iterations, Checkpoint* checkpoint, Checkpoint::Name name) {
+    const auto members = [&](Archive& state) { archive(state); };
+    if (restore_state(checkpoint, name, members)) {
+      result_.resumed_iterations = result_.iterations;
+      log::info("continuing an interrupted run, which did {} iterations", result_.iterations);
+    }
     Progress progress("clustering", static_cast<std::size_t>(iterations), "iterations");
+    progress.advance(static_cast<std::size_t>(result_.iterations));
     while (result_.iterations < iterations) {
       classify();
       ++result_.iterations;
@@ -50,11 +58,22 @@ class Quantizer {
       if (!follow_moves()) break;
       fill_empty_clusters();
       update_means();
+      store_state(checkpoint, name, members);
     }
     return std::move(result_);
   }
 
  private:
+  void archive(Archive& archive) {
+    archive.array(result_.means);
+    archive.array(sums_);
+    archive.array(weights_);
+    archive.array(counts_);
+    archive.array(old_labels_);
+    archive.value(result_.iterations);
+    if (archive.is_reading()) result_.labels = old_labels_;
+  }
+
   std::span<const float> row(std::size_t point) const {
     return signal_.subspan(point * dimension_, dimension_);
   }
@@ -150,9 +169,11 @@ class Quantizer {
 }  // namespace
 
 Clustering quantize(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
-                    int iterations, std::span<const float> point_weights) {
+                    int iterations, std::span<const float> point_weights, Checkpoint* checkpoint,
+                    Checkpoint::Name name) {
   assert(iterations >= 1 && !means.empty() && signal.size() >= means.size());
-  return Quantizer(signal, dimension, std::move(means), point_weights).run(iterations);
+  return Quantizer(signal, dimension, std::move(means), point_weights)
+      .run(iterations, checkpoint, name);
 }
 
 }  // namespace prt::cpca

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/checkpoint.h"
 #include "core/progress.h"
 
 namespace prt::cpca {
@@ -14,6 +15,7 @@ struct Clustering {
   std::vector<float> means;           ///< cluster_count × dimension, of the points of each cluster
   std::vector<std::uint32_t> labels;  ///< cluster of each point
   int iterations = 0;                 ///< done
+  int resumed_iterations = 0;         ///< of these, by an interrupted run
 };
 
 /// Classifies and averages, starting from `means`, at most `iterations` times, until no point
@@ -21,8 +23,9 @@ struct Clustering {
 /// only when every point is its mean. Points that are as near to one mean as to another go to the
 /// lower. Preconditions: `signal` is finite; at least one iteration.
 /// `point_weights` of the points in the means, >= 0, or empty; the mean of points that all weigh
-/// nothing stays.
+/// nothing stays. The state of that name in the checkpoint, if any, follows the iterations.
 Clustering quantize(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
-                    int iterations, std::span<const float> point_weights = {});
+                    int iterations, std::span<const float> point_weights = {},
+                    Checkpoint* checkpoint = nullptr, Checkpoint::Name name = {});
 
 }  // namespace prt::cpca

@@ -50,6 +50,7 @@ nlohmann::ordered_json to_json(const Encoded& encoded, std::span<const float> si
       {"cluster_count", encoding.cluster_count},
       {"component_count", encoding.component_count},
       {"iteration_count", encoded.iterations},
+      {"resumed_iteration_count", encoded.resumed_iterations},
       {"iterations", levels_to_json(encoded.levels)},
       {"signal_bytes", signal_bytes},
       {"bytes", bytes},

@@ -13,6 +13,7 @@
 #include "core/log.h"
 #include "core/stopwatch.h"
 #include "cpca/error_limits.h"
+#include "cpca/kept.h"
 #include "cpca/search_resize.h"
 #include "cpca/search_survey.h"
 
@@ -65,7 +66,7 @@ class Search {
     Found found{.encoded = std::move(best_->encoded),
                 .sampled_count = survey_.sampled_count,
                 .trials = std::move(trials_),
-                .seconds = stopwatch_.seconds()};
+                .seconds = stopwatch_.seconds() + resumed_seconds_};
     found.encoded.stages = std::move(stages_);
     found.encoded.flops = flops_;
     found.cost = found.seconds / cold_seconds_;
@@ -151,22 +152,35 @@ class Search {
     }
     last_.reset();
     auto made = std::make_shared<Made>();
-    made->encoded = encode(method_, signal_, dimension_, options);
+    made->trial = {.choice = choice, .is_warm = is_warm};
+    const auto number = static_cast<std::uint32_t>(trials_.size());
+    const auto members = [&](Archive& archive) {
+      cpca::archive(archive, made->encoded);
+      archive.value(made->trial.seconds);
+    };
+    made->trial.is_resumed = restore_state(options_.checkpoint, {kTrialStage, number}, members);
+    if (made->trial.is_resumed) {
+      resumed_seconds_ += made->trial.seconds;
+    } else {
+      options.checkpoint_stage = kEncoderStage + number;
+      made->encoded = encode(method_, signal_, dimension_, options);
+      made->trial.seconds = stopwatch.seconds();
+      store_state(options_.checkpoint, {kTrialStage, number}, members);
+      if (options_.checkpoint != nullptr) options_.checkpoint->release(options.checkpoint_stage);
+    }
     const Encoding& encoding = made->encoded.encoding;
-    made->trial = {.choice = choice,
-                   .error = relative_error(encoding, signal_, bound_.norm, options.point_weights),
-                   .bytes = bound_.cost.bytes(encoding),
-                   .is_warm = is_warm,
-                   .seconds = stopwatch.seconds()};
+    made->trial.error = relative_error(encoding, signal_, bound_.norm, options.point_weights);
+    made->trial.bytes = bound_.cost.bytes(encoding);
     last_ = std::move(made);
   }
 
   void learn() {
     const Trial& trial = last_->trial;
     trials_.push_back(trial);
-    log::info("{} clusters, {} components{}: relative error {:.4g}, {} bytes, {:.2f} s",
+    log::info("{} clusters, {} components{}: relative error {:.4g}, {} bytes, {:.2f} s{}",
               trial.choice.cluster_count, trial.choice.component_count,
-              trial.is_warm ? " from the last" : "", trial.error, trial.bytes, trial.seconds);
+              trial.is_warm ? " from the last" : "", trial.error, trial.bytes, trial.seconds,
+              trial.is_resumed ? " of an interrupted run" : "");
     flops_ += last_->encoded.flops;
     const auto& stages = last_->encoded.stages;
     stages_.insert(stages_.end(), stages.begin(), stages.end());
@@ -238,7 +252,7 @@ class Search {
   std::vector<Trial> trials_;
   double bytes_share_ = 1.0;  ///< bytes of the last encoding for each that its choice promised
   std::vector<Stage> stages_;
-  double flops_ = 0.0, cold_flops_ = 0.0, cold_seconds_ = 0.0;
+  double flops_ = 0.0, cold_flops_ = 0.0, cold_seconds_ = 0.0, resumed_seconds_ = 0.0;
 };
 
 }  // namespace

@@ -17,10 +17,11 @@ namespace prt::cpca {
 /// An encoding that was made on the way.
 struct Trial {
   Choice choice;
-  double error = 0.0;     ///< relative, by the norm of the bound
-  std::size_t bytes = 0;  ///< by the cost of the bound
-  bool is_warm = false;   ///< started from the one before
-  double seconds = 0.0;
+  double error = 0.0;       ///< relative, by the norm of the bound
+  std::size_t bytes = 0;    ///< by the cost of the bound
+  bool is_warm = false;     ///< started from the one before
+  double seconds = 0.0;     ///< of whichever run made it
+  bool is_resumed = false;  ///< made by an interrupted run
 };
 
 struct Found {

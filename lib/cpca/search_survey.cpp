@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "cpca/iterative_encoder.h"
+#include "cpca/kept.h"
 
 namespace prt::cpca {
 
@@ -75,9 +76,11 @@ class Surveyor {
         sample_(sample),
         dimension_(dimension),
         size_{sample.all_count, static_cast<std::size_t>(dimension)},
-        options_(options) {
+        options_(options),
+        checkpoint_(options.checkpoint) {
     options_.point_weights = sample.point_weights;
     options_.iterations = std::min(options.iterations, kIterations);
+    options_.checkpoint = nullptr;  // whole columns are kept
     // More than the signal is never worth it.
     most_bytes_ = bound.max_bytes.value_or(sample.all_count * size_.dimension * sizeof(float));
   }
@@ -85,7 +88,16 @@ class Surveyor {
   Column encode(int cluster_count) {
     options_.cluster_count = cluster_count;
     options_.component_count = most_components(cluster_count);
-    Column column = method_ == Method::fixed ? encode_fixed() : encode_iteratively();
+    Column column{cluster_count, {}};
+    const Checkpoint::Name name{kSurveyStage, column_count_++};
+    const auto members = [&](Archive& archive) {
+      archive.array(column.errors);
+      archive.value(flops_);
+    };
+    if (!restore_state(checkpoint_, name, members)) {
+      column = method_ == Method::fixed ? encode_fixed() : encode_iteratively();
+      store_state(checkpoint_, name, members);
+    }
     for (std::size_t i = 0; bound_.max_error && i < column.errors.size(); ++i) {
       if (column.errors[i] > *bound_.max_error) continue;
       most_bytes_ =
@@ -160,6 +172,8 @@ class Surveyor {
   const int dimension_;
   const Size size_;
   Options options_;
+  Checkpoint* const checkpoint_;
+  std::uint32_t column_count_ = 0;
   std::size_t most_bytes_ = 0;
   double flops_ = 0.0;
 };

@@ -45,10 +45,12 @@ Encoded encode_static(std::span<const float> signal, int dimension, const Option
                       static_cast<std::size_t>(options.cluster_count), options.point_weights);
   clock.finish("seeding");
   Clustering clustering =
-      quantize(signal, n, std::move(means), options.iterations, options.point_weights);
+      quantize(signal, n, std::move(means), options.iterations, options.point_weights,
+               options.checkpoint, {options.checkpoint_stage, 0});
   encoded.encoding.means = std::move(clustering.means);
   encoded.encoding.cluster_of_point = std::move(clustering.labels);
   encoded.iterations = clustering.iterations;
+  encoded.resumed_iterations = clustering.resumed_iterations;
   clock.finish("clustering");
   fit_components(signal, options.point_weights, encoded.encoding);
   clock.finish("components");

@@ -52,6 +52,15 @@ bool WorkingSpace::use_signal() {
   return true;
 }
 
+void WorkingSpace::archive(Archive& archive) {
+  bool uses_axes = has_axes();
+  std::size_t dimension = dimension_;
+  archive.value(uses_axes);
+  archive.value(dimension);
+  if (!uses_axes) use_signal();
+  dimension_ = dimension;
+}
+
 std::vector<float> WorkingSpace::convert(std::span<const float> points) const {
   if (!has_axes()) return {points.begin(), points.end()};
   return to_axes(axes_, points);

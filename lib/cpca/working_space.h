@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "core/archive.h"
 #include "cpca/principal_axes.h"
 #include "cpca/subspaces.h"
 
@@ -25,6 +26,9 @@ class WorkingSpace {
   bool fit_to(double error);
   /// All coordinates. True when rows() are others now.
   bool use_signal();
+
+  /// Which coordinates are in use.
+  void archive(Archive& archive);
 
   /// Points of the signal's coordinates (count × dimension) in those of rows(), stride of rows().
   std::vector<float> convert(std::span<const float> points) const;

@@ -7,6 +7,7 @@
 
 #include "compress/signal.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "cpca/meshes.h"
 #include "gltf/document.h"
 #include "signal/transfer_signal.h"
@@ -125,6 +126,43 @@ TEST_F(CompressedModel, IsTheSameOfASignalOfAnySize) {
     EXPECT_NEAR(stored({}).relative_rmse(), expected, 0.02 * expected);
     for (float& value : signal_.values) value /= size;
   }
+}
+
+TEST_F(CompressedModel, AnInterruptedRunIsContinuedByOneOfTheSameSignalAndOptions) {
+  job_.cluster_count = 12;
+  job_.component_count = 3;
+  job_.checkpoint = {folder_ / "a.prt.glb.partial", 0.0};
+  Report whole("test");
+  run(job_, whole);
+  const std::string expected = read_text_file(job_.output);
+  EXPECT_FALSE(std::filesystem::exists(job_.checkpoint.path));
+  // Stopped where the file would be written.
+  job_.no_clobber = true;
+  Report stopped("test");
+  EXPECT_THROW(run(job_, stopped), Error);
+  const std::string kept = read_text_file(job_.checkpoint.path);
+  job_.no_clobber = false;
+
+  const auto resumed_iterations = [&](const auto& change) {
+    folder_.write("a.prt.glb.partial", kept);
+    Job job = job_;
+    change(job);
+    Report report("test");
+    run(job, report);
+    EXPECT_FALSE(std::filesystem::exists(job_.checkpoint.path));
+    return report.json()["resumed_iteration_count"].get<int>();
+  };
+  EXPECT_EQ(resumed_iterations([](Job&) {}), whole.json()["iteration_count"].get<int>());
+  EXPECT_EQ(read_text_file(job_.output), expected);
+  EXPECT_GT(resumed_iterations([](Job& job) { job.storage.is_incoherent = true; }), 0);
+  EXPECT_EQ(resumed_iterations([](Job& job) { job.cluster_count = 13; }), 0);
+  EXPECT_EQ(resumed_iterations([](Job& job) { job.component_count = 4; }), 0);
+  EXPECT_EQ(resumed_iterations([](Job& job) { job.iterations = 9; }), 0);
+  EXPECT_EQ(resumed_iterations([](Job& job) { job.seed = 2; }), 0);
+  EXPECT_EQ(resumed_iterations([](Job& job) { job.weigh_by_area = true; }), 0);
+  signal_.values[5] += 1.0f;
+  signal::write_transfer(folder_ / "a.transfer.exr", signal_);
+  EXPECT_EQ(resumed_iterations([](Job&) {}), 0);
 }
 
 TEST(CheckJob, RefusesWhatAModelHasNoRoomForBeforeTheWork) {
