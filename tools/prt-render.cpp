@@ -85,6 +85,7 @@ void add_reference_options(prt::cli::Options& app, prt::runtime::ReferenceOption
   app.add_option("--brdf", options.brdf,
                  std::string(prt::brdf::kBrdfSyntax) +
                      "; the one that the transfer was baked with, else lambert, if not given")
+      ->check(prt::cli::accepted_by([](const auto& name) { prt::brdf::parse_brdf(name); }))
       ->needs(flag);
   app.add_option("--samples", options.sample_count, "Paths in a pixel")
       ->check(prt::cli::Range(1, 1 << 20))

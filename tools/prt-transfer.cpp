@@ -42,7 +42,6 @@ void add_options(cli::Options& app, Options& options) {
                  "Rays per vertex for what is reflected; 0: a quarter of --rays")
       ->check(cli::Range(0, 1 << 14))
       ->needs(bounces)
-
       ->group("Transfer");
   app.add_flag("--unshadowed", options.unshadowed, "No rays: the closed form of a convex body")
       ->excludes(bounces)
@@ -52,11 +51,8 @@ void add_options(cli::Options& app, Options& options) {
       {"auto", transfer::ChannelMode::automatic},
       {"1", transfer::ChannelMode::one},
       {"3", transfer::ChannelMode::three}};
-  app.add_text(
-         "--channels",
-         [&options, modes](const std::string& name) { options.diffuse.channels = modes.at(name); },
-         "Colour channels; auto: 3 where an albedo is coloured")
-      ->check(cli::IsMember({"auto", "1", "3"}))
+  app.add_choice("--channels", options.diffuse.channels, modes,
+                 "Colour channels; auto: 3 where an albedo is coloured")
       ->default_str("auto")
       ->group("Transfer");
 }
@@ -66,9 +62,12 @@ void add_matrix_options(cli::Options& app, Options& options) {
   group(app.add_option("--mode", options.mode, "diffuse: a vector a vertex; matrix: glossy"))
       ->check(cli::IsMember({"diffuse", "matrix"}));
   group(app.add_option("--rows", options.row_count,
-                       "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"));
+                       "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"))
+      ->check(cli::Range(1, 256))
+      ->check(cli::accepted_by([](const auto& n) { sh::hemisphere_functions(std::stoi(n)); }));
   group(app.add_option("--brdf", options.brdf,
-                       std::string(brdf::kBrdfSyntax) + "; from-material if not given"));
+                       std::string(brdf::kBrdfSyntax) + "; from-material if not given"))
+      ->check(cli::accepted_by([](const auto& name) { brdf::parse_brdf(name); }));
   group(app.add_option("--projection", options.projection, "To compare with [least-squares]"))
       ->check(cli::IsMember({"least-squares", "zero-hemisphere"}));
 }
@@ -79,8 +78,8 @@ void check_usage(const Options& options) {
   if (!matrix && options.row_count) reject("--rows needs --mode matrix");
   if (!matrix && options.brdf) reject("--brdf needs --mode matrix");
   if (!matrix && options.projection) reject("--projection needs --mode matrix");
-  if (options.brdf) brdf::parse_brdf(*options.brdf);
-  if (options.row_count) sh::hemisphere_functions(*options.row_count);
+  const bool wide = options.diffuse.band_count > transfer::kMaxMatrixBandCount;
+  if (matrix && wide) reject("--bands above 8 needs --mode diffuse");
 }
 
 mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {

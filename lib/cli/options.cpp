@@ -38,6 +38,18 @@ Validator above_zero() {
   return number_check(
       "POSITIVE", [](double x) { return x > 0.0; }, "a number above 0");
 }
+Validator accepted_by(const std::function<void(const std::string&)>& function) {
+  return std::make_shared<CLI::Validator>(
+      [function](const std::string& value) {
+        try {
+          function(value);
+        } catch (const Error& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      },
+      "");
+}
 Validator IsMember(const std::vector<std::string>& names) {
   return std::make_shared<CLI::IsMember>(names);
 }
@@ -136,10 +148,19 @@ Option* Options::add_vector(const std::string& name, const std::function<void(co
 Option* Options::add_repeated_numbers(const std::string& name, int count,
                                       const std::function<void(std::span<const float>)>& set,
                                       const std::string& description) {
-  const auto set_values = [set, count](const std::vector<float>& values) {
+  const auto set_values = [name, set, count](const std::vector<float>& values) {
     const std::span<const float> all = values;
     const auto step = static_cast<std::size_t>(count);
-    for (std::size_t first = 0; first < all.size(); first += step) set(all.subspan(first, step));
+    if (all.size() % step != 0) {
+      throw Error(ErrorKind::usage, name + ": wrong count",
+                  {.found = fmt::format("{}", fmt::join(values, ",")),
+                   .expected = fmt::format("{} values", count)});
+    }
+    try {
+      for (std::size_t first = 0; first < all.size(); first += step) set(all.subspan(first, step));
+    } catch (const Error& error) {
+      throw Error(ErrorKind::usage, name + ": " + error.what());
+    }
   };
   return keep(app_.add_option_function<std::vector<float>>(name, set_values, description))
       ->repeated_numbers(count);

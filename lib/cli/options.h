@@ -26,6 +26,8 @@ Validator Range(double low, double high);
 Validator at_least_zero();
 Validator above_zero();
 Validator IsMember(const std::vector<std::string>& names);
+/// What a function takes that throws Error for the rest.
+Validator accepted_by(const std::function<void(const std::string&)>& function);
 template <class T>
 Validator IsMember(const std::map<std::string, T>& values) {
   std::vector<std::string> names;

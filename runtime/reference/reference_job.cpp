@@ -22,8 +22,8 @@ std::unique_ptr<reference::Illumination> make_illumination(const Lighting& light
     return std::make_unique<reference::BandLimitedIllumination>(
         sh::rotated(lighting.light, world_from_light));
   if (!lighting.is_full_map)
-    throw Error(ErrorKind::usage, "the full light mode needs an environment map",
-                {.file = options.picture.light.string(), .expected = "an .exr or .hdr map"});
+    throw Error(ErrorKind::usage, "--light-mode full needs an environment map",
+                {.file = options.picture.light.string(), .expected = "--light MAP.exr or MAP.hdr"});
   return std::make_unique<reference::EnvironmentIllumination>(lighting.environment,
                                                               world_from_light);
 }

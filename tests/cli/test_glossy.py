@@ -59,7 +59,7 @@ class GlossyTest(ToolTest):
         matrix = (*bake, "--mode", "matrix")
         self.refused(WRONG_USAGE, "n² - 1", *matrix, "--rows", 23)
         self.refused(WRONG_USAGE, "not a BRDF", *matrix, "--brdf", "ggx:2")
-        self.refused(WRONG_USAGE, "1 to 8", *matrix, "--bands", 9)
+        self.refused(WRONG_USAGE, "--bands above 8", *matrix, "--bands", 9)
         self.refused(WRONG_USAGE, "at most 8192", *matrix, "--bands", 8, "--rows", 144)
         self.refused(WRONG_USAGE, "0 to 16384", *matrix, "--bounces", 1, "--bounce-rays", 20000)
 
