@@ -68,7 +68,7 @@ void check_files(Options& options, const cli::CommonOptions& common) {
   std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
     if (options.transfer.empty()) options.transfer = inspect::transfer_beside(options.file);
-    inspect::make_plot_folder(options.plots);
+    inspect::check_plot_folder(options.plots);
     for (const fs::path& file : inspect::plot_files(options.plots, !options.transfer.empty())) {
       outputs.push_back({file, {file.extension().string()}, {}});
     }

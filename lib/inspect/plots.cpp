@@ -190,17 +190,15 @@ std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
   return plots;
 }
 
-void make_plot_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directory(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw_failed("cannot make the folder for plots",
-                 {.file = folder.string(), .found = error.message()});
-  }
+void check_plot_folder(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder)) return check_output(folder, false);
+  if (std::filesystem::is_directory(folder)) return;
+  throw_failed("exists and is no folder", {.file = folder.string()});
 }
 
 void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,
                  bool no_clobber, Report& report) {
+  std::filesystem::create_directory(folder);
   for (const Plot& plot : plots) {
     const std::filesystem::path png = folder / (plot.name + ".png");
     const std::filesystem::path csv = folder / (plot.name + ".csv");
@@ -222,6 +220,7 @@ std::vector<std::string> plot_names(bool with_transfer) {
 std::vector<std::filesystem::path> plot_files(const std::filesystem::path& folder,
                                               bool with_transfer) {
   std::vector<std::filesystem::path> files;
+  if (!std::filesystem::exists(folder)) return files;
   for (const std::string& name : plot_names(with_transfer)) {
     files.push_back(folder / (name + ".png"));
     files.push_back(folder / (name + ".csv"));

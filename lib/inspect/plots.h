@@ -40,15 +40,16 @@ std::filesystem::path transfer_beside(const std::filesystem::path& model);
 std::vector<Plot> plots_of_compression(const std::filesystem::path& model,
                                        const std::filesystem::path& transfer);
 
-/// Makes the folder for plots where it is missing, in a folder that exists. Throws Error (failed).
-void make_plot_folder(const std::filesystem::path& folder);
+/// Throws Error (failed) when it is neither a folder nor can become one.
+void check_plot_folder(const std::filesystem::path& folder);
 
-/// Writes NAME.png and NAME.csv of each plot into the folder and adds them to the report's outputs.
-/// Throws Error (failed).
+/// Writes NAME.png and NAME.csv of each plot into the folder, made when missing, and adds
+/// them to the report's outputs. Throws Error (failed).
 void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,
                  bool no_clobber, Report& report);
 
-/// Names of all plots that the two can give, and the files of them in a folder.
+/// Names of all plots that the two can give, and the files of them in a folder;
+/// none of a folder that is yet to be made.
 std::vector<std::string> plot_names(bool with_transfer);
 std::vector<std::filesystem::path> plot_files(const std::filesystem::path& folder,
                                               bool with_transfer);
