@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -11,6 +12,7 @@ namespace prt::signal {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
+constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
 
 /// A zero-terminated name; empty at the end of the header or of the file.
 std::string read_name(std::istream& stream) {
@@ -28,7 +30,10 @@ void prescan_header(const std::filesystem::path& path) {
                     {.file = path.string(), .element = element});
   };
   std::ifstream stream(path, std::ios::binary);
-  stream.ignore(8);  // magic number and version
+  char start[8] = {};  // magic number and version
+  if (!stream.read(start, sizeof start) || !std::string_view(start, 4).starts_with(kMagic)) {
+    return;  // OpenEXR says so
+  }
   for (std::string name = read_name(stream); !name.empty(); name = read_name(stream)) {
     const std::string type = read_name(stream);
     std::int32_t size = 0;
