@@ -51,7 +51,8 @@ void add_picture_options(prt::cli::Options& app, PictureOptions& options) {
   app.add_vector("--eye", options.eye, "Where the camera stands [frames the model]");
   app.add_vector("--target", options.target, "What it looks at [the model's middle]");
   app.add_vector("--up", options.up, "Up in the picture [0,1,0]");
-  app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees");
+  app.add_option("--fov", options.vertical_fov, "Vertical field of view, degrees")
+      ->check(prt::cli::Range(0.01, 179.0));
 
   app.start_group("Picture");
   app.add_size("--size", options.width, options.height, "Width and height in pixels [1024x1024]");

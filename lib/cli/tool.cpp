@@ -73,7 +73,9 @@ Tool::Tool(std::string name, std::string description, std::string example)
       CLI::MultiOptionPolicy::TakeLast);
   app_->set_version_flag("--version", [this] { return version(); });
   app_->failure_message([this](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("{}: {}. {} --help says more.\n", name_, error.what(), name_);
+    const std::string_view what = error.what();
+    return fmt::format("{}: {}{} {} --help says more.\n", name_, what,
+                       what.ends_with('.') ? "" : ".", name_);
   });
   const char* group = "Common";
   options_.add_option("--threads", common_.threads, "Threads; 0: all")

@@ -4,7 +4,7 @@ ones say."""
 import json
 import unittest
 
-from toolbox import BAD_INPUT, QUAD_OBJ, WRONG_USAGE, ToolTest
+from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, WRONG_USAGE, ToolTest
 
 
 class Options(ToolTest):
@@ -47,6 +47,39 @@ class Options(ToolTest):
         self.wrong("excludes", *transfer, "--unshadowed")
         self.done(*transfer, "--bounces", 1, "--bounce-rays", 16384, "--channels", 1)
 
+    def test_options_of_glossy_transfer(self):
+        matrix = ("prt-transfer", self.quad, "-o", self.folder / "a.transfer.exr", "--mode", "matrix")
+        self.wrong("--rows: .*found 23, expected n²", *matrix, "--rows", 23)
+        self.wrong("--rows", *matrix, "--rows", 1000)
+        self.wrong("--bands above 8", *matrix, "--bands", 9)
+        for brdf in ("phong", "phong:0.5", "ward:1,2,3", "ggx:0", "gold"):
+            self.wrong(f"--brdf: not a BRDF: found {brdf}, expected .*lambert", *matrix, "--brdf", brdf)
+            self.wrong("--brdf: not a BRDF", "prt-render", self.quad, "-o", self.folder / "a.png",
+                       "--reference", "--brdf", brdf)
+
+    def test_lights_near_the_model(self):
+        render = ("prt-render", self.quad, "-o", self.folder / "a.png")
+        point, sphere = "0,1,0,1,1,1", "0,1,0,0.1,1,1,1"
+        self.wrong("--point-light: wrong count", *render, "--point-light", point, "--point-light",
+                   "0,1,0")
+        self.wrong("--point-light", *render, "--point-light", "0,1,0,1,1")
+        self.wrong("--point-light: .*finite", *render, "--point-light", "0,1,0,1,1,nan")
+        self.wrong("--sphere-light: .*radius", *render, "--sphere-light", "0,1,0,-1,1,1,1")
+        self.wrong("--light-grid", *render, "--sphere-light", sphere, "--light-grid", 0)
+
+    def test_a_folder_for_plots_is_made_when_there_are_plots(self):
+        light, plots = self.folder / "l.json", self.folder / "plots"
+        self.done("prt-light", "--constant", "1,1,1", "-o", light)
+        self.refused(BAD_INPUT, "l.json", "prt-inspect", light, "--plots", plots)
+        self.assertFalse(plots.exists())
+        self.refused(FAILED, "no folder", "prt-inspect", self.quad, "--plots", self.source)
+        self.refused(FAILED, "Create .*missing first", "prt-inspect", self.quad, "--plots",
+                     self.folder / "missing" / "plots")
+
+    def test_a_model_is_no_transfer(self):
+        self.refused(BAD_INPUT, "not a readable OpenEXR file", "prt-render", self.quad, "-o",
+                     self.folder / "a.png", "--transfer", self.quad)
+
     def test_numbers_that_are_not_finite(self):
         for value in ("nan", "inf", "-nan"):
             self.wrong("--max-edge", "prt-import", self.source, "-o", self.folder / "a.glb",
@@ -63,6 +96,7 @@ class Options(ToolTest):
                    *out, "--max-edge", -1)
         self.wrong("--unit: expected a number above 0, found 0", "prt-import", self.source, *out,
                    "--unit", 0)
+        self.wrong("--fov", "prt-render", self.quad, "-o", self.folder / "a.png", "--fov", 0)
         for size in ("0x5", "100x20000", "100000x5", "7"):
             self.wrong("WIDTHxHEIGHT, each from 1 to 16384", "prt-render", self.quad, "-o",
                        self.folder / "a.png", "--size", size)
