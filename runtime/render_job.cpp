@@ -29,17 +29,6 @@ View make_view(const RenderOptions& options, const Model& model) {
   return view;
 }
 
-void check_drawable(const Renderer& renderer, const View& view) {
-  if (renderer.can_draw(view.draw, view.show)) return;
-  const bool needs_both = view.show == Show::error;
-  throw Error(ErrorKind::usage, "the files lack the transfer for this picture",
-              {.expected = needs_both ? "both compressed and uncompressed transfer"
-                           : view.draw == Draw::uncompressed && view.show == Show::radiance
-                               ? "uncompressed transfer"
-                               : "compressed transfer",
-               .advice = "Give a .glb of prt-compress, and --transfer for uncompressed transfer."});
-}
-
 /// Near lights take the place of the usual lamp.
 Lighting make_distant_lighting(const RenderOptions& options, const Model& model) {
   const bool only_near = options.picture.light.empty() && !options.near_lights.empty();
@@ -113,7 +102,7 @@ void render(const RenderOptions& options, Report& report) {
   Renderer renderer;
   renderer.set_model(model, options.passes);
   report.json()["pass_count"] = renderer.pass_count();
-  check_drawable(renderer, view);
+  renderer.check_can_draw(view.draw, view.show);
   renderer.set_lighting(lighting);
   renderer.set_near_lights(options.near_lights, options.grid_size);
   turn_light(renderer, picture.light_rotation, report);

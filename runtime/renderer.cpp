@@ -187,6 +187,16 @@ bool Renderer::can_draw(Draw draw, Show show) const {
   return drawings_->compressed.has_value();
 }
 
+void Renderer::check_can_draw(Draw draw, Show show) const {
+  if (can_draw(draw, show)) return;
+  throw Error(
+      ErrorKind::usage, "the files lack the transfer for this picture",
+      {.expected = show == Show::error ? "both compressed and uncompressed transfer"
+                   : draw == Draw::uncompressed && show == Show::radiance ? "uncompressed transfer"
+                                                                          : "compressed transfer",
+       .advice = "Give a .glb of prt-compress, and --transfer for uncompressed transfer."});
+}
+
 void Renderer::draw(const View& view, int width, int height, int samples) {
   samples = std::clamp(samples, 1, std::max(gl::limits().max_samples, 1));
   if (width != frame_.width() || height != frame_.height() || samples != frame_samples_) {

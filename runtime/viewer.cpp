@@ -76,7 +76,11 @@ Viewer::Viewer(const ViewerOptions& options)
   view_.show = options_.show;
   view_.exposure = options_.exposure;
   view_.background_color = Vec3(0.03f);
-  if (!options_.model.empty()) load_model_file(options_.model, options_.transfer);
+  if (!options_.model.empty() || !options_.transfer.empty())
+    load_model_file(options_.model, options_.transfer);
+  const bool is_default = options_.draw == Draw::single && options_.show == Show::radiance;
+  if (!options_.model.empty() && !is_default)
+    renderer_.check_can_draw(options_.draw, options_.show);
   load_light_file(options_.light);
 }
 
@@ -117,7 +121,7 @@ void Viewer::open(const fs::path& path) {
 }
 
 void Viewer::load_model_file(const fs::path& path, const fs::path& transfer) {
-  if (path.empty()) throw_bad_input("open a model before its transfer");
+  if (path.empty()) throw Error(ErrorKind::usage, "open a model before its transfer");
   const Model model = load_model(path, transfer);
   renderer_.set_model(model);
   const bool same_model = path == model_path_;

@@ -59,6 +59,8 @@ class Viewer {
   /// why.
   void open(const std::filesystem::path& path);
   const std::string& message() const { return message_; }
+  /// What the panel says of the model.
+  const std::string& model_text() const { return model_text_; }
 
  private:
   void load_model_file(const std::filesystem::path& model, const std::filesystem::path& transfer);

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "gltf/document.h"
-#include "runtime/models.h"
+#include "runtime/glossy_models.h"
 
 namespace prt::runtime {
 namespace {
@@ -59,6 +59,7 @@ class ViewerTest : public testing::Test {
   fs::path empty_window() {
     ViewerOptions options = options_;
     options.model.clear();
+    options.transfer.clear();
     options.screenshot = path("empty.png");
     Viewer(options).run();
     return options.screenshot;
@@ -84,6 +85,20 @@ TEST_F(ViewerTest, PanelStandsBesideTheModel) {
   with_panel.screenshot = path("panel.png");
   Viewer(with_panel).run();
   EXPECT_GT(changed_pixel_count(options_.screenshot, with_panel.screenshot), 2000u);
+}
+
+TEST_F(ViewerTest, LightTurnsWhenAskedAndLampsNearTheModelShine) {
+  Viewer(options_).run();
+  ViewerOptions other = options_;
+  other.screenshot = path("other.png");
+  other.animate = true;
+  other.screenshot_frame_count = 40;
+  Viewer(other).run();
+  EXPECT_GT(changed_pixel_count(options_.screenshot, other.screenshot), 100u);
+  other.animate = false;
+  other.near_lights.push_back({Vec3(2, 1, 2), 0.3f, Vec3(20)});
+  Viewer(other).run();
+  EXPECT_GT(changed_pixel_count(options_.screenshot, other.screenshot), 1000u);
 }
 
 TEST_F(ViewerTest, MapIsProjectedAgainForAModelOfMoreBands) {
@@ -139,6 +154,55 @@ TEST_F(ViewerTest, BadFilesOnTheCommandLineAreErrors) {
   EXPECT_THROW(Viewer{options_}, Error);
   options_.model = path("good.glb");
   options_.light = path("bad.json");
+  EXPECT_THROW(Viewer{options_}, Error);
+}
+
+TEST_F(ViewerTest, GlossyModelStandsBesideItsUncompressedTransfer) {
+  const mesh::Scene scene = scene_of({torus(40, 20)});
+  signal::TransferSignal signal = passing_on(scene, 3);
+  gltf::PrecomputedTransfer transfer = in_pairs(signal);
+  signal.mesh_hash = transfer.mesh_hash = mesh::mesh_hash(scene);
+  signal.brdf = transfer.brdf = "phong:10";
+  signal::write_transfer(path("glossy.transfer.exr"), signal);
+  gltf::Document document = gltf::Document::from_scene(scene);
+  document.set_precomputed_transfer(transfer);
+  document.save_glb(path("exact.glb"));
+  for (float& weight : transfer.encoding.weights) weight *= 0.5f;
+  document.set_precomputed_transfer(transfer);
+  document.save_glb(path("coarse.glb"));
+
+  options_.transfer = path("glossy.transfer.exr");
+  const auto show = [&](const char* model, Draw draw, const char* picture) {
+    options_.model = path(model);
+    options_.draw = draw;
+    options_.screenshot = path(picture);
+    Viewer viewer(options_);
+    viewer.run();
+    return viewer.model_text();
+  };
+  const std::string exact = show("exact.glb", Draw::single, "exact.png");
+  EXPECT_NE(exact.find("phong:10, 3 bands, 9 exit rows, one pass"), std::string::npos) << exact;
+  EXPECT_NE(exact.find("error of the compression: 0.00%"), std::string::npos) << exact;
+  const std::string coarse = show("coarse.glb", Draw::single, "coarse.png");
+  EXPECT_NE(coarse.find("error of the compression: "), std::string::npos) << coarse;
+  EXPECT_EQ(coarse.find("0.00%"), std::string::npos) << coarse;
+  show("exact.glb", Draw::uncompressed, "uncompressed.png");
+  EXPECT_EQ(changed_pixel_count(path("exact.png"), path("uncompressed.png")), 0u);
+  EXPECT_GT(changed_pixel_count(path("coarse.png"), path("uncompressed.png")), 1000u);
+  EXPECT_GT(changed_pixel_count(path("exact.png"), empty_window()), 10000u);
+}
+
+TEST_F(ViewerTest, WhatTheFilesCannotShowIsAnError) {
+  options_.draw = Draw::uncompressed;
+  EXPECT_THROW(Viewer{options_}, Error);
+  options_.draw = Draw::single;
+  options_.show = Show::error;
+  EXPECT_THROW(Viewer{options_}, Error);
+  signal_.blocks.front().name = "torus";
+  signal::write_transfer(path("good.transfer.exr"), signal_);
+  options_.transfer = path("good.transfer.exr");
+  EXPECT_NO_THROW(Viewer{options_});
+  options_.model.clear();
   EXPECT_THROW(Viewer{options_}, Error);
 }
 
