@@ -92,7 +92,6 @@ void CompressedDrawing::make_programs() {
     cluster_programs_[varies] =
         gl::Program("transfer_cluster.vert", exit_.fragment_shader(), defines);
   }
-  depth_program_ = gl::Program("depth.vert", "depth.frag");
 }
 
 void CompressedDrawing::set_light(const LightField& field) {
@@ -121,30 +120,21 @@ void CompressedDrawing::draw_single(const Viewpoint& viewpoint) const {
   program.set("u_sample_size", pass_count * static_cast<int>(constant_count_));
   constant_table_.bind(0);
   single_array_.bind();
-  draw_passes(pass_count, true, [&](int pass) {
-    if (pass > 0) glClear(GL_DEPTH_BUFFER_BIT);  // every pass decides anew, and alike
+  draw_passes(pass_count, [&](int pass) {
     program.set("u_first_constant", pass * static_cast<int>(constant_count_));
     draw_triangles(0, index_count_);
   });
 }
 
 void CompressedDrawing::draw_clusters(const Viewpoint& viewpoint) const {
-  depth_program_.use();
-  depth_program_.set("u_clip_from_world", viewpoint.clip_from_world);
-  single_array_.bind();
-  draw_triangles(0, index_count_);
-
-  glDepthFunc(GL_EQUAL);
-  glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE);
+  glBlendFuncSeparate(GL_ONE, GL_ONE, GL_ZERO, GL_ONE);  // coverage stays
   const gl::Program& program = cluster_programs_[grid_.size > 1];
   bind(program, viewpoint);
   chunk_array_.bind();
   const std::size_t pass_size = constant_count_ * exit_.layout().pass_vector_count();
   const auto pass_count = static_cast<std::size_t>(exit_.layout().pass_count);
-  // The first draw has set the coverage.
-  draw_passes(exit_.layout().pass_count, false, [&](int pass) {
+  draw_passes(exit_.layout().pass_count, [&](int pass) {
     for (std::size_t sample = 0; sample < grid_.point_count(); ++sample) {
       program.set("u_light_sample", grid_.place(sample));
       draw_chunks(program,
@@ -152,8 +142,6 @@ void CompressedDrawing::draw_clusters(const Viewpoint& viewpoint) const {
     }
   });
   glDisable(GL_BLEND);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
 }
 
 void CompressedDrawing::draw_chunks(const gl::Program& program, const Vec4* constants) const {

@@ -18,12 +18,11 @@ void draw_triangles(std::size_t first, std::size_t count) {
                  reinterpret_cast<const void*>(first * sizeof(std::uint32_t)));
 }
 
-void draw_passes(int pass_count, bool coverage, const std::function<void(int pass)>& draw) {
+void draw_passes(int pass_count, const std::function<void(int pass)>& draw) {
   const auto mask = [](bool writable) -> GLboolean { return writable ? GL_TRUE : GL_FALSE; };
   for (int pass = 0; pass < pass_count; ++pass) {
     const bool all = pass_count == 1;
-    glColorMask(mask(all || pass == 0), mask(all || pass == 1), mask(all || pass == 2),
-                mask(coverage));
+    glColorMask(mask(all || pass == 0), mask(all || pass == 1), mask(all || pass == 2), mask(all));
     draw(pass);
   }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -22,7 +22,7 @@ gl::VertexArray array_with_positions(const gl::Buffer& positions, const gl::Buff
 void draw_triangles(std::size_t first, std::size_t count);
 
 /// Calls draw(pass) for each pass, which can write its colours only: all, or of three passes one
-/// each; and coverage where `coverage` says so.
-void draw_passes(int pass_count, bool coverage, const std::function<void(int pass)>& draw);
+/// each, coverage staying as it is.
+void draw_passes(int pass_count, const std::function<void(int pass)>& draw);
 
 }  // namespace prt::runtime

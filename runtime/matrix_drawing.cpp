@@ -68,8 +68,7 @@ void MatrixDrawing::draw(const Viewpoint& viewpoint) const {
   transfer_.bind(0);
   light_.bind(program);
   array_.bind();
-  draw_passes(exit_.layout().pass_count, true, [&](int pass) {
-    if (pass > 0) glClear(GL_DEPTH_BUFFER_BIT);  // every pass decides anew, and alike
+  draw_passes(exit_.layout().pass_count, [&](int pass) {
     program.set("u_pass", pass);
     draw_triangles(0, index_count_);
   });

@@ -1,5 +1,7 @@
 // A model in OpenGL: its buffers, and every way to draw it into the bound target, which has depth.
-// Colours are linear exit radiance, alpha is coverage.
+// Colours are linear exit radiance, alpha is coverage. BlackDrawing comes first and leaves depth
+// and coverage; the others then draw where depths are equal. Diffuse transfer in one call needs no
+// such start.
 #pragma once
 
 #include <array>
@@ -31,8 +33,8 @@ class CompressedDrawing {
 
   /// All clusters in one draw call; constants are fetched for each vertex.
   void draw_single(const Viewpoint& viewpoint) const;
-  /// The loop of [Sloan03] §6.2: depth first, then supercluster by supercluster, constants in
-  /// uniform registers, added up by blending. Where two triangles coincide exactly, both are added.
+  /// The loop of [Sloan03] §6.2: supercluster by supercluster, constants in uniform registers,
+  /// added up by blending. Where two triangles coincide exactly, both are added.
   void draw_clusters(const Viewpoint& viewpoint) const;
 
  private:
@@ -51,7 +53,6 @@ class CompressedDrawing {
   std::vector<std::size_t> chunk_offsets_;
   std::vector<std::uint32_t> chunk_constants_;  // the first of each chunk, and how many there are
   std::array<gl::Program, 2> single_programs_, cluster_programs_;  // of constant, of varying light
-  gl::Program depth_program_;
   gl::Table constant_table_;
   LightGrid grid_;
   std::vector<Vec4> constants_;  // of each sample of the light, of each pass
@@ -92,6 +93,18 @@ class MatrixDrawing {
   gl::Table transfer_;
   LightVectors light_;
   std::array<gl::Program, 2> programs_;  // of constant, of varying light
+};
+
+/// Every triangle black: what back faces stay.
+class BlackDrawing {
+ public:
+  BlackDrawing(std::size_t index_count, const gl::Buffer& positions, const gl::Buffer& indices);
+  void draw(const Viewpoint& viewpoint) const;
+
+ private:
+  std::size_t index_count_;
+  gl::VertexArray array_;
+  gl::Program program_;
 };
 
 /// A colour for each vertex.

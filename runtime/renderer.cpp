@@ -88,7 +88,8 @@ struct Renderer::Drawings {
         grid(box_of(model.positions)),
         positions(std::span(model.positions)),
         indices(std::span(model.indices)),
-        exit(model, passes) {
+        exit(model, passes),
+        black(model.indices.size(), positions, indices) {
     if (model.transfer) {
       compressed.emplace(model, exit, positions, indices);
       const std::size_t index_count = model.indices.size();
@@ -105,7 +106,7 @@ struct Renderer::Drawings {
       error.emplace(error_colors(model), model.indices.size(), positions, indices);
   }
 
-  void draw(const View& view) const {
+  void draw(const View& view, int samples) const {
     const camera::DepthRange range = camera::depth_range(view.camera, bounds);
     const camera::Camera::Axes axes = view.camera.axes();
     const Viewpoint viewpoint{view.camera.clip_from_world(range.z_near, range.z_far),
@@ -113,8 +114,25 @@ struct Renderer::Drawings {
     if (view.show == Show::clusters) return clusters->draw(viewpoint);
     if (view.show == Show::superclusters) return superclusters->draw(viewpoint);
     if (view.show == Show::error) return error->draw(viewpoint);
-    if (view.draw == Draw::clusters) return compressed->draw_clusters(viewpoint);
-    if (view.draw == Draw::single) return compressed->draw_single(viewpoint);
+    // Diffuse pixels are too cheap for black ones first, unless samples of a pixel are to be the
+    // same for all ways of drawing.
+    const bool is_cheap = !exit.layout().is_glossy() && samples == 1;
+    if (is_cheap && view.draw != Draw::clusters) return draw_fronts(view.draw, viewpoint);
+    // The front of what is nearest, over everything in black: no pixel is shaded twice, and what a
+    // pixel covers is the same for every way of drawing.
+    black.draw(viewpoint);
+    glEnable(GL_CULL_FACE);
+    glDepthFunc(GL_EQUAL);
+    glDepthMask(GL_FALSE);
+    draw_fronts(view.draw, viewpoint);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_CULL_FACE);
+  }
+
+  void draw_fronts(Draw draw, const Viewpoint& viewpoint) const {
+    if (draw == Draw::clusters) return compressed->draw_clusters(viewpoint);
+    if (draw == Draw::single) return compressed->draw_single(viewpoint);
     if (matrices) return matrices->draw(viewpoint);
     uncompressed->draw(viewpoint);
   }
@@ -130,6 +148,7 @@ struct Renderer::Drawings {
   LightGrid grid;
   gl::Buffer positions, indices;
   ExitStage exit;
+  BlackDrawing black;
   std::optional<CompressedDrawing> compressed;
   std::optional<UncompressedDrawing> uncompressed;
   std::optional<MatrixDrawing> matrices;
@@ -208,7 +227,7 @@ void Renderer::draw(const View& view, int width, int height, int samples) {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (can_draw(view.draw, view.show)) {
     glEnable(GL_DEPTH_TEST);
-    drawings_->draw(view);
+    drawings_->draw(view, samples);
     glDisable(GL_DEPTH_TEST);
   }
   frame_.resolve();

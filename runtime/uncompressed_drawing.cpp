@@ -64,6 +64,19 @@ void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
   draw_triangles(0, index_count_);
 }
 
+BlackDrawing::BlackDrawing(std::size_t index_count, const gl::Buffer& positions,
+                           const gl::Buffer& indices)
+    : index_count_(index_count),
+      array_(array_with_positions(positions, indices)),
+      program_("black.vert", "black.frag") {}
+
+void BlackDrawing::draw(const Viewpoint& viewpoint) const {
+  program_.use();
+  program_.set("u_clip_from_world", viewpoint.clip_from_world);
+  array_.bind();
+  draw_triangles(0, index_count_);
+}
+
 ColorDrawing::ColorDrawing(std::span<const Vec3> colors, std::size_t index_count,
                            const gl::Buffer& positions, const gl::Buffer& indices)
     : index_count_(index_count),

@@ -1,6 +1,5 @@
 // Radiance towards the eye: interpolated coefficients of exit radiance dotted with the functions'
-// values y(v) from a map of the hemisphere [Sloan03] §6.2. Negative values stay; alpha is coverage;
-// back faces are black.
+// values y(v) from a map of the hemisphere [Sloan03] §6.2. Negative values stay; alpha is coverage.
 #include "hemisphere_map.glsl"
 
 centroid in vec3 v_view;
@@ -20,5 +19,5 @@ void main() {
     radiance += dot(v_exit[j], y);
 #endif
   }
-  o_color = vec4(gl_FrontFacing ? radiance : vec3(0.0), 1.0);
+  o_color = vec4(radiance, 1.0);
 }

@@ -1,5 +1,4 @@
-// Linear radiance as interpolated, negative values included; alpha is coverage. Back faces are
-// black, as in the bake and for the path tracer: transfer knows the front alone.
+// Linear radiance as interpolated, negative values included; alpha is coverage; back faces are black.
 centroid in vec3 v_radiance;
 
 out vec4 o_color;

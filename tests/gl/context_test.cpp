@@ -36,7 +36,7 @@ TEST_P(EveryApi, FloatTargetKeepsWhatIsDrawn) {
   for (const int samples : {1, limits().max_samples}) {
     const Format format = limits().float32_targets ? Format::rgba32f : Format::rgba16f;
     const Target target(format, 3, 2, true, samples);
-    const Program program("fullscreen.vert", "depth.frag");
+    const Program program("fullscreen.vert", "black.frag");
     const VertexArray none;
     target.bind();
     program.use();
