@@ -5,9 +5,9 @@
 // Direction (x,y,z), z >= 0, lies at p = (x,y) / (1 + z), the rim at |p| = 1. Texel t, counted from
 // 0 in both coordinates, stands at p = 2 (t - 1) / (kHemisphereMapSize - 3) - 1, so that one texel
 // surrounds the disk. Values are control points of the bicubic B-spline that interpolates the
-// functions, which a shader evaluates by four bilinear fetches (shaders/exit_radiance.frag). Within
+// functions, which a shader evaluates by four bilinear fetches (hemisphere_map.glsl). Within
 // five bands it errs by less than 0.1% of a function's range, where bilinear interpolation of the
-// functions errs by 4% (tests/runtime/hemisphere_map_test.cpp).
+// functions errs by 4% (tests/runtime/glossy_cpu_test.cpp).
 #pragma once
 
 #include <vector>

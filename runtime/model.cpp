@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "gltf/document.h"
 #include "mesh/frame.h"
+#include "runtime/triangle_order.h"
 #include "sh/hemisphere.h"
 
 namespace prt::runtime {
@@ -94,9 +95,9 @@ Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransf
     const mesh::TriangleMesh& mesh = primitive.mesh;
     model.positions.insert(model.positions.end(), mesh.positions.begin(), mesh.positions.end());
   }
-  model.indices = scene.indices();
-  model.bounds = camera::bounding_sphere(scene);
   const std::size_t vertex_count = model.positions.size();
+  model.indices = ordered_for_vertex_reuse(scene.indices(), vertex_count);
+  model.bounds = camera::bounding_sphere(scene);
   if (transfer) check_transfer(vertex_count, transfer->encoding.point_count, transfer->row_count);
   if (signal) check_transfer(vertex_count, signal->vertex_count(), signal->row_count);
   if (transfer && signal) check_alike(*transfer, *signal);

@@ -14,7 +14,8 @@
 
 namespace prt::runtime {
 
-/// Vertices and triangles of all primitives, numbered through as in mesh::Scene.
+/// Vertices of all primitives, numbered through as in mesh::Scene, and their triangles in the order
+/// of runtime/triangle_order.h.
 struct Model {
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> indices;
