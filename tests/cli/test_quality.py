@@ -11,26 +11,30 @@ PICTURE = ("--background", "none", "--antialias", 1)  # pixel centres, on both s
 
 
 class Quality(ToolTest):
-    def bake(self, source, environment, bounces, size, samples, *import_options):
-        """Bakes `source` and renders its reference, 5 bands, 256 clusters of 8 components."""
-        self.picture = ("--size", size, *PICTURE)
+    def setUp(self):
+        super().setUp()
         self.mesh, self.transfer, self.baked, self.light, self.reference = (
             self.folder / name for name in
             ("a.glb", "a.transfer.exr", "a.prt.glb", "a.json", "reference.exr"))
+
+    def bring(self, source, environment, size, *import_options):
+        """Model and light, of 5 bands."""
+        self.picture = ("--size", size, *PICTURE)
         self.done("prt-import", source, "-o", self.mesh, *import_options)
+        self.done("prt-light", environment, "-o", self.light, "--bands", 5)
+
+    def bake(self, bounces):
+        """The transfer of 5 bands and the picture to compare with."""
         self.done("prt-transfer", self.mesh, "-o", self.transfer, "--bands", 5, "--rays", 2048,
                   "--bounces", bounces)
-        self.done("prt-compress", self.mesh, self.transfer, "-o", self.baked, "--clusters", 256,
-                  "--components", 8, "--method", "static")
-        self.done("prt-light", environment, "-o", self.light, "--bands", 5)
         self.done("prt-render", self.mesh, "--reference", "--bounces", bounces, "--light",
-                  self.light, "--samples", samples, "-o", self.reference,
+                  self.light, "--samples", 256, "-o", self.reference,
                   "--report", self.folder / "r.json", *self.picture)
         self.noise = self.load(self.folder / "r.json")["relative_standard_error"]
 
-    def draw(self, name, *options):
+    def draw(self, name, model, *options):
         path = self.folder / name
-        self.done("prt-render", self.baked, "--light", self.light, "-o", path, *self.picture, *options)
+        self.done("prt-render", model, "--light", self.light, "-o", path, *self.picture, *options)
         return path
 
     def comparison(self, image, reference):
@@ -46,10 +50,13 @@ class Quality(ToolTest):
         return math.sqrt(max(0, figures["relative_rmse"] ** 2 - self.noise ** 2)), figures
 
     def test_bunny_against_the_path_tracer(self):
-        self.bake(BUNNY, WORLD / "sunset.exr", 2, "384x384", 256, "--base-color", "0.7,0.7,0.7")
-        uncompressed = self.draw("u.exr", "--transfer", self.transfer)
-        compressed = self.draw("c.exr")
-        clusters = self.draw("k.exr", "--draw", "clusters")
+        self.bring(BUNNY, WORLD / "sunset.exr", "384x384", "--base-color", "0.7,0.7,0.7")
+        self.bake(bounces=2)
+        self.done("prt-compress", self.mesh, self.transfer, "-o", self.baked, "--clusters", 256,
+                  "--components", 8, "--method", "static")
+        uncompressed = self.draw("u.exr", self.mesh, "--transfer", self.transfer)
+        compressed = self.draw("c.exr", self.baked)
+        clusters = self.draw("k.exr", self.baked, "--draw", "clusters")
         self.assertLess(self.noise, 0.02)
         for path, limit in ((uncompressed, 0.02), (compressed, 0.03)):
             error, figures = self.error(path)
@@ -60,12 +67,12 @@ class Quality(ToolTest):
         self.assertLess(ways["difference"]["max"], 1 / 255)
 
     def test_bounces_in_the_coloured_box(self):
+        self.bring(SOURCE / "data/colored_box.obj", WORLD / "courtyard.exr", "256x256",
+                   "--max-edge", 0.04)
         for bounces in (0, 1, 2, 10):
             with self.subTest(bounces=bounces):
-                self.bake(SOURCE / "data/colored_box.obj", WORLD / "courtyard.exr", bounces,
-                          "256x256", 256,
-                          "--max-edge", 0.04)
-                uncompressed = self.draw("u.exr", "--transfer", self.transfer)
+                self.bake(bounces)
+                uncompressed = self.draw("u.exr", self.mesh, "--transfer", self.transfer)
                 error, figures = self.error(uncompressed)
                 print(f"{bounces} bounces: {figures['relative_rmse']}, noise {self.noise}, "
                       f"bias {figures['relative_bias']}")
