@@ -1,16 +1,19 @@
 // How near the search for --max-error comes to the least cost, and what it takes:
-//   bench_cpca_search signal.npy|signal.transfer.exr max_error [clusters clusters [components]]
-// Beside it every number of clusters of a grid (each 1.25 times the one before) is encoded at full
-// strength with 0, 1, … vectors. The two numbers between which the bound lies are then encoded with
-// just as many vectors, and between them log error is interpolated in log clusters.
+//   bench_cpca_search signal.npy|signal.transfer.exr max_error [rmse|max]
+// Beside it every number of vectors that could be better is encoded at full strength: with as many
+// clusters as fit the least bytes so far, and when these are within the bound, with fewer and fewer
+// until log error can be interpolated in log clusters. From the vectors of the search it goes on to
+// fewer and to more of them until two in turn bring nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <vector>
+#include <cstring>
+#include <optional>
 
 #include "cpca/search.h"
+#include "cpca/search_survey.h"
 #include "signal/npy.h"
 #include "signal/transfer_signal.h"
 
@@ -18,12 +21,14 @@ namespace {
 
 using namespace prt;
 
-constexpr double kStep = 1.25;
-
-struct Least {
-  cpca::Choice choice;
-  std::size_t bytes = ~std::size_t{0};
-};
+/// Between so many clusters and as many times more errors are interpolated.
+constexpr double kStep = 1.15;
+/// Nor are so many times fewer clusters encoded.
+constexpr double kClose = 0.98;
+/// The usual exponent of the error over clusters.
+constexpr double kSlope = 0.5;
+/// Numbers of vectors in turn that bring nothing, after which there is no use in going on.
+constexpr int kPatience = 2;
 
 signal::Matrix read(const std::filesystem::path& path) {
   if (path.extension() != ".exr") return signal::read_npy(path);
@@ -32,91 +37,120 @@ signal::Matrix read(const std::filesystem::path& path) {
   return {std::move(transfer.values), point_count, static_cast<std::size_t>(transfer.dimension())};
 }
 
-cpca::Encoded encode(const signal::Matrix& signal, const cpca::Choice& choice) {
-  return cpca::encode_iterative(
-      signal.values, static_cast<int>(signal.column_count),
-      {.cluster_count = choice.cluster_count, .component_count = choice.component_count});
-}
+class Comparison {
+ public:
+  Comparison(const signal::Matrix& signal, const cpca::Bound& bound)
+      : signal_(signal), bound_(bound), size_{signal.row_count, signal.column_count} {}
 
-/// Relative errors with 0, 1, … vectors.
-std::vector<double> encode_column(const signal::Matrix& signal, const cpca::Choice& most) {
-  const cpca::Encoded encoded = encode(signal, most);
-  const double energy = cpca::weighted_energy(signal.values, signal.row_count, {});
-  std::vector<double> errors;
-  for (const cpca::Level& level : encoded.levels) {
-    errors.push_back(std::sqrt(level.errors.back() / energy));
-  }
-  return errors;
-}
-
-/// The least clusters with so many vectors that keep to the bound, by two about it.
-cpca::Choice interpolate(const signal::Matrix& signal, int low, int high, int components,
-                         double max_error) {
-  const auto error = [&](int clusters) {
-    return cpca::relative_error(encode(signal, {clusters, components}).encoding, signal.values,
-                                cpca::Norm::rmse);
-  };
-  const double low_error = error(low), high_error = error(high);
-  const double share = std::log(low_error / max_error) / std::log(low_error / high_error);
-  return {static_cast<int>(std::ceil(low * std::pow(static_cast<double>(high) / low, share))),
-          components};
-}
-
-Least search_grid(const signal::Matrix& signal, const cpca::Bound& bound, int first, int last,
-                  int most_components) {
-  const cpca::Size size{signal.row_count, signal.column_count};
-  Least least;
-  std::vector<double> before;
-  int clusters_before = 0;
-  for (double count = first; count <= last; count *= kStep) {
-    const int clusters = static_cast<int>(std::lround(count));
-    const std::vector<double> errors = encode_column(signal, {clusters, most_components});
-    for (int i = 0; i <= most_components && !before.empty(); ++i) {
-      const auto level = static_cast<std::size_t>(i);
-      if (errors[level] > *bound.max_error || before[level] <= *bound.max_error) continue;
-      const cpca::Choice choice =
-          interpolate(signal, clusters_before, clusters, i, *bound.max_error);
-      const std::size_t bytes = bound.cost.bytes(size, choice);
-      fmt::print("  grid: {} clusters, {} components: {} bytes\n", choice.cluster_count, i, bytes);
-      std::fflush(stdout);
-      if (bytes < least.bytes) least = {choice, bytes};
+  /// Returns the bytes of the search over the least that were found, by any way.
+  double run() {
+    const auto dimension = static_cast<int>(size_.dimension);
+    const cpca::Found found =
+        cpca::encode_within(bound_, cpca::Method::iterative, signal_.values, dimension, {});
+    print(found);
+    const int components = found.encoded.encoding.component_count;
+    const std::size_t bytes = bound_.cost.bytes(found.encoded.encoding);
+    best_ = {found.encoded.encoding.cluster_count, components};
+    least_ = bytes;
+    try_out(components);
+    for (const int step : {-1, 1}) {
+      for (int i = components + step, idle = 0; i >= 0 && i <= dimension && idle < kPatience;
+           i += step) {
+        idle = try_out(i) ? 0 : idle + 1;
+      }
     }
-    before = errors;
-    clusters_before = clusters;
+    return static_cast<double>(bytes) / static_cast<double>(least_);
   }
-  return least;
-}
+
+  const cpca::Choice& best() const { return best_; }
+  std::size_t least() const { return least_; }
+
+ private:
+  static void print(const cpca::Found& found) {
+    for (const cpca::Trial& trial : found.trials) {
+      fmt::print("  tried: {} clusters, {} components: error {:.5f}, {} bytes, {:.2f} s{}\n",
+                 trial.choice.cluster_count, trial.choice.component_count, trial.error, trial.bytes,
+                 trial.seconds, trial.is_warm ? ", warm" : "");
+    }
+    fmt::print("search: {:.2f} s, {:.2f} encodings' time, {:.2f} of their products\n",
+               found.seconds, found.cost, found.flops_cost);
+    std::fflush(stdout);
+  }
+
+  double error(const cpca::Choice& choice) const {
+    const cpca::Encoded encoded = cpca::encode_iterative(
+        signal_.values, static_cast<int>(size_.dimension),
+        {.cluster_count = choice.cluster_count, .component_count = choice.component_count});
+    const double error = cpca::relative_error(encoded.encoding, signal_.values, bound_.norm);
+    fmt::print("  beside: {} clusters, {} components: error {:.5f}\n", choice.cluster_count,
+               choice.component_count, error);
+    std::fflush(stdout);
+    return error;
+  }
+
+  /// The most clusters with so many vectors that take no more than the least bytes; 0: none do.
+  int most_clusters(int components) const {
+    const auto bytes = [&](int clusters) {
+      return bound_.cost.bytes(size_, {clusters, components});
+    };
+    if (bytes(1) > least_) return 0;
+    const auto more = static_cast<int>((least_ - bytes(1)) / (bytes(2) - bytes(1)));
+    return std::min(1 + more, cpca::most_clusters(size_.point_count));
+  }
+
+  /// The fewest clusters with so many vectors that keep to the bound, if `high` do.
+  std::optional<int> fewest_clusters(int components, int high) const {
+    const double max_error = *bound_.max_error;
+    double high_error = error({high, components}), low_error = 0.0;
+    if (high_error > max_error) return std::nullopt;
+    int low = 0;
+    while (true) {
+      const double slope =
+          low > 0 ? std::log(low_error / high_error) / std::log(static_cast<double>(high) / low)
+                  : kSlope;
+      const double share = std::pow(high_error / max_error, 1.0 / slope);
+      const int guess = std::max(low + 1, static_cast<int>(std::ceil(share * high)));
+      if (guess > kClose * high || (low > 0 && high <= kStep * low)) return std::min(guess, high);
+      const double guess_error = error({guess, components});
+      (guess_error <= max_error ? high : low) = guess;
+      (guess_error <= max_error ? high_error : low_error) = guess_error;
+    }
+  }
+
+  /// Whether so many vectors take less bytes than those before.
+  bool try_out(int components) {
+    const int most = most_clusters(components);
+    if (most == 0) return false;
+    const std::optional<int> fewest = fewest_clusters(components, most);
+    if (!fewest) return false;
+    const std::size_t bytes = bound_.cost.bytes(size_, {*fewest, components});
+    if (bytes >= least_) return false;
+    best_ = {*fewest, components};
+    least_ = bytes;
+    return true;
+  }
+
+  const signal::Matrix& signal_;
+  const cpca::Bound bound_;
+  const cpca::Size size_;
+  cpca::Choice best_;
+  std::size_t least_ = 0;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr, "bench_cpca_search signal.npy max_error [clusters clusters [components]]\n");
+    fmt::print(stderr, "bench_cpca_search signal.npy|signal.transfer.exr max_error [rmse|max]\n");
     return 2;
   }
-  const auto number = [&](int i, int otherwise) {
-    return argc > i ? std::atoi(argv[i]) : otherwise;
-  };
+  const bool is_max = argc > 3 && std::strcmp(argv[3], "max") == 0;
   const signal::Matrix signal = read(argv[1]);
-  const cpca::Bound bound{.max_error = std::atof(argv[2]), .max_bytes = {}};
-  const cpca::Found found = cpca::encode_within(bound, cpca::Method::iterative, signal.values,
-                                                static_cast<int>(signal.column_count), {});
-  for (const cpca::Trial& trial : found.trials) {
-    fmt::print("  tried: {} clusters, {} components: error {:.5f}, {} bytes, {:.2f} s{}\n",
-               trial.choice.cluster_count, trial.choice.component_count, trial.error, trial.bytes,
-               trial.seconds, trial.is_warm ? ", warm" : "");
-  }
-  const std::size_t bytes = bound.cost.bytes(found.encoded.encoding);
-  fmt::print(
-      "search: {} clusters, {} components: {} bytes, {:.2f} s, {:.2f} encodings' time, "
-      "{:.2f} of their products\n",
-      found.encoded.encoding.cluster_count, found.encoded.encoding.component_count, bytes,
-      found.seconds, found.cost, found.flops_cost);
-  std::fflush(stdout);
-  if (argc < 5) return 0;
-  const Least least = search_grid(signal, bound, number(3, 16), number(4, 1024), number(5, 12));
-  fmt::print("grid: {} clusters, {} components: {} bytes; the search takes {:+.1f}%\n",
-             least.choice.cluster_count, least.choice.component_count, least.bytes,
-             100.0 * (static_cast<double>(bytes) / static_cast<double>(least.bytes) - 1.0));
-  return 0;
+  Comparison comparison(signal, {.max_error = std::atof(argv[2]),
+                                 .norm = is_max ? cpca::Norm::maximum : cpca::Norm::rmse,
+                                 .max_bytes = {}});
+  const double share = comparison.run();
+  fmt::print("best: {} clusters, {} components: {} bytes; the search takes {:+.1f}%\n",
+             comparison.best().cluster_count, comparison.best().component_count, comparison.least(),
+             100.0 * (share - 1.0));
 }

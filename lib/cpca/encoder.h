@@ -42,6 +42,8 @@ struct Stage {
 struct Level {
   int component_count = 0;
   std::vector<double> errors;  ///< SE after each iteration
+  /// Whether the last of them are of all coordinates: in axes, subspaces are not quite the best.
+  bool is_whole = true;
 };
 
 struct Encoded {

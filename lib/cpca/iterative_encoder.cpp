@@ -43,18 +43,22 @@ IterativeEncoder::IterativeEncoder(std::span<const float> signal, std::size_t di
 
 std::vector<Level> IterativeEncoder::run() {
   restore();
-  if (options_.start.labels.empty()) {
-    while (std::ssize(levels_) <= options_.component_count) {
+  const int last = options_.component_count;
+  if (!options_.start.labels.empty()) {
+    if (!levels_.empty()) return std::move(levels_);
+    clusterer_.set_labels(options_.start.labels);
+    space_.fit_to(options_.start.squared_error);
+    move_to_space(last);
+  } else {
+    if (std::ssize(levels_) > last) return std::move(levels_);
+    while (std::ssize(levels_) < last) {
       run_level();
       store();
     }
-  } else if (levels_.empty()) {
-    clusterer_.set_labels(options_.start.labels);
-    space_.fit_to(options_.start.squared_error);
-    move_to_space(options_.component_count);
-    iterate_level(options_.component_count);
-    store();
+    if (last > 0) start_level(last, levels_.back().errors.back());
   }
+  finish_level(last);
+  store();
   return std::move(levels_);
 }
 
@@ -84,25 +88,32 @@ void IterativeEncoder::store() {
 const Level& IterativeEncoder::run_level() {
   const auto count = static_cast<int>(levels_.size());
   if (count > 0) start_level(count, levels_.back().errors.back());
-  iterate_level(count);
+  levels_.push_back({.component_count = count, .errors = {}, .is_whole = !space_.has_axes()});
+  iterate(levels_.back(), options_.iterations, false);
   return levels_.back();
 }
 
-void IterativeEncoder::iterate_level(int count) {
-  levels_.push_back({.component_count = count, .errors = {}});
-  const bool is_refined = count == options_.component_count && space_.has_axes();
-  const int last = is_refined ? std::min(kLastIterations, options_.iterations / 2) : 0;
-  iterate(levels_.back(), options_.iterations - last);
-  if (last > 0) refine(levels_.back(), last);
+void IterativeEncoder::finish_level(int count) {
+  const int last = space_.has_axes() ? std::min(kLastIterations, options_.iterations / 2) : 0;
+  levels_.push_back(
+      {.component_count = count, .errors = {}, .is_whole = last > 0 || !space_.has_axes()});
+  iterate(levels_.back(), options_.iterations - last, true);
+  if (last == 0) return;
+  space_.use_signal();
+  move_to_space(count);
+  for (int i = 0; i < last; ++i) {
+    levels_.back().errors.push_back(clusterer_.classify(false).error);
+    update(count, kSteps);
+  }
 }
 
-void IterativeEncoder::refine(Level& level, int iterations) {
-  space_.use_signal();
-  move_to_space(level.component_count);
-  for (int i = 0; i < iterations; ++i) {
-    level.errors.push_back(clusterer_.classify(false).error);
-    update(level.component_count, kSteps);
-  }
+double IterativeEncoder::measure() {
+  const Level& level = levels_.back();
+  if (!space_.has_axes()) return level.errors.back();
+  const Rows rows = space_.signal_rows();
+  move_to(rows, rows.stride, level.component_count);
+  is_away_ = true;
+  return clusterer_.classify(false).error;
 }
 
 /// One vector more, and one beyond it that is ready when its turn comes.
@@ -113,27 +124,27 @@ void IterativeEncoder::update(int count, int steps) {
 }
 
 void IterativeEncoder::start_level(int count, double error) {
-  if (space_.fit_to(error)) {
+  if (space_.fit_to(error) || is_away_) {
     move_to_space(count);
+    is_away_ = false;
   } else {
     clusterer_.set_dimension(space_.dimension());
     update(count, kSteps);
   }
 }
 
-void IterativeEncoder::move_to_space(int count) {
-  clusterer_.set_rows(space_.rows());
-  clusterer_.set_dimension(space_.dimension());
+void IterativeEncoder::move_to(const Rows& rows, std::size_t dimension, int count) {
+  clusterer_.set_rows(rows);
+  clusterer_.set_dimension(dimension);
   update(count, kFirstSteps);
 }
 
-void IterativeEncoder::iterate(Level& level, int iterations) {
+void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
   const int count = level.component_count, last = iterations - 1;
   bool settled = false;  // nothing moved in the last pass
   for (int i = 0; i <= last; ++i) {
     // The first pass of all knows no neighbours, not even those of its own result.
-    const bool full = settled || i == 0 || (count == 0 && i == 1) ||
-                      (count == options_.component_count && i == last);
+    const bool full = settled || i == 0 || (count == 0 && i == 1) || (is_final && i == last);
     const Clusterer::Pass pass = clusterer_.classify(full);
     level.errors.push_back(pass.error + space_.tail());
     update(count, kSteps);

@@ -24,6 +24,9 @@ class IterativeEncoder {
   std::vector<Level> run();
   /// The next of these levels: no vectors, then one more each time.
   const Level& run_level();
+  /// Fits clusters in all coordinates, and returns the squared error. Until the next level that is
+  /// where the clusterer is, so that it tells errors of points.
+  double measure();
 
   Clusterer& clusterer() { return clusterer_; }
   const WorkingSpace& space() const { return space_; }
@@ -36,17 +39,18 @@ class IterativeEncoder {
   void store();
   void update(int count, int steps);
   void start_level(int count, double error);
-  void iterate_level(int count);
-  void iterate(Level& level, int iterations);
-  /// More of them in all coordinates.
-  void refine(Level& level, int iterations);
-  void move_to_space(int count);
+  /// The level that ends an encoding, of which some iterations are in all coordinates.
+  void finish_level(int count);
+  void iterate(Level& level, int iterations, bool is_final);
+  void move_to(const Rows& rows, std::size_t dimension, int count);
+  void move_to_space(int count) { move_to(space_.rows(), space_.dimension(), count); }
 
   const Options& options_;
   WorkingSpace space_;
   Clusterer clusterer_;
   std::vector<Level> levels_;
   int resumed_iterations_ = 0;
+  bool is_away_ = false;  ///< the clusterer is in all coordinates, which are not those of space_
   Progress progress_;
 };
 

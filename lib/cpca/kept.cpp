@@ -9,6 +9,7 @@ void archive(Archive& archive, std::vector<Level>& levels) {
   for (Level& level : levels) {
     archive.value(level.component_count);
     archive.array(level.errors);
+    archive.value(level.is_whole);
   }
 }
 

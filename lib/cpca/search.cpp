@@ -205,7 +205,8 @@ class Search {
     }
   }
 
-  /// What an encoding tells about fewer vectors; of the largest errors iterative ones do not.
+  /// What an encoding tells about fewer vectors: iterative ones not of the largest errors, nor of
+  /// levels in axes, which are worse than encodings that end there.
   void learn_column() {
     if (method_ == Method::fixed) {
       survey_.model.correct(
@@ -216,6 +217,7 @@ class Search {
     if (bound_.norm == Norm::maximum || energy_ <= 0.0) return;
     Column column{last_->trial.choice.cluster_count, {}};
     for (const Level& level : last_->encoded.levels) {
+      if (!level.is_whole) return;
       column.errors.push_back(std::sqrt(level.errors.back() / energy_));
     }
     // The adaptation is a level of its own.

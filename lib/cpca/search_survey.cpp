@@ -129,7 +129,7 @@ class Surveyor {
                      (1.0 - taken / static_cast<double>(sample_.count)));
   }
 
-  /// Of the encoder's last level.
+  /// Of what the encoder measured last.
   double relative_error(IterativeEncoder& encoder, double squared_error) const {
     if (sample_.energy <= 0.0) return 0.0;
     if (bound_.norm == Norm::rmse) return std::sqrt(squared_error / sample_.energy);
@@ -157,7 +157,8 @@ class Surveyor {
                              static_cast<std::size_t>(options_.component_count) + 1);
     Column column{options_.cluster_count, {}};
     for (int i = 0; i <= options_.component_count; ++i) {
-      const double squared_error = encoder.run_level().errors.back();
+      encoder.run_level();
+      const double squared_error = encoder.measure();
       column.errors.push_back(relative_error(encoder, squared_error) *
                               correction(static_cast<std::size_t>(i)));
       if (bound_.max_error && column.errors.back() <= *bound_.max_error) break;

@@ -45,10 +45,8 @@ bool WorkingSpace::fit_to(double error) {
 bool WorkingSpace::use_signal() {
   if (!has_axes()) return false;
   axes_ = {};
-  rows_.values = signal_.data();
-  rows_.shorts = nullptr;
-  rows_.scales = nullptr;
-  rows_.stride = dimension_ = signal_dimension_;
+  rows_ = signal_rows();
+  dimension_ = signal_dimension_;
   return true;
 }
 

@@ -26,6 +26,10 @@ class WorkingSpace {
   bool fit_to(double error);
   /// All coordinates. True when rows() are others now.
   bool use_signal();
+  /// Those, whatever is in use.
+  Rows signal_rows() const {
+    return {signal_.data(), rows_.count, signal_dimension_, rows_.weights};
+  }
 
   /// Which coordinates are in use.
   void archive(Archive& archive);

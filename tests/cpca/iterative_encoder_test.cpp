@@ -8,6 +8,8 @@
 #include "core/parallel.h"
 #include "cpca/encoder.h"
 #include "cpca/figures.h"
+#include "cpca/fit.h"
+#include "cpca/iterative_encoder.h"
 #include "cpca/plain_iterative.h"
 #include "cpca/signals.h"
 
@@ -69,6 +71,34 @@ TEST(IterativeEncoder, IsAsGoodAsThePlainMethod) {
                          static_cast<std::size_t>(test.options.cluster_count), test.options.seed);
     const double expected = plain.run(test.options.component_count, test.options.iterations);
     EXPECT_NEAR(error_of(encoded, signal), expected, 0.005 * expected);
+  }
+}
+
+TEST(IterativeEncoder, MeasuresLevelsInAllCoordinates) {
+  constexpr int kDimension = 128;
+  const auto signal = make_signal(1200, kDimension, 4);
+  const Options options{.cluster_count = 20, .component_count = 3, .iterations = 4};
+  IterativeEncoder encoder(signal, kDimension, options, 4);
+  const auto error_of_best = [&](const std::vector<std::uint32_t>& labels, int count) {
+    Options here = options;
+    here.component_count = count;
+    Encoded best;
+    best.encoding = fit(signal, kDimension, labels, here);
+    return error_of(best, signal);
+  };
+  double last = std::numeric_limits<double>::infinity();
+  for (int count = 0; count <= 3; ++count) {
+    const double in_axes = encoder.run_level().errors.back();
+    EXPECT_LE(in_axes, last * (1.0 + kRounding));  // the one before does not suffer from it
+    last = in_axes;
+    const double before = error_of_best(encoder.clusterer().labels(), count);
+    const double measured = encoder.measure();
+    EXPECT_LT(measured, in_axes);
+    EXPECT_LT(measured, 1.01 * before);  // points move once more
+    EXPECT_GT(measured, (1.0 - kRounding) * error_of_best(encoder.clusterer().labels(), count));
+    double sum = 0.0;
+    for (const float error : encoder.clusterer().errors()) sum += double{error};
+    EXPECT_NEAR(sum, measured, 1e-6 * measured);
   }
 }
 

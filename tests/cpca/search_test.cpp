@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "cpca/figures.h"
 #include "cpca/surface.h"
@@ -85,6 +87,29 @@ TEST(EncodeWithin, TakesAllMethods) {
                                       kSearchDimension, {.iterations = 8});
     EXPECT_LE(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.03);
     EXPECT_GT(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.025);
+  }
+}
+
+// Rates of the report are all operations over all seconds.
+TEST(EncodeWithin, CountsTheOperationsAndSecondsOfAllItsEncodings) {
+  const auto signal = make_surface(3000, kDimension);
+  for (const Method method : {Method::fixed, Method::iterative}) {
+    const Found found = encode_within({.max_error = 0.02, .max_bytes = {}}, method, signal,
+                                      kDimension, {.iterations = 8});
+    const Choice first = found.trials.front().choice;
+    const Encoded alone = encode(method, signal, kDimension,
+                                 {.cluster_count = first.cluster_count,
+                                  .component_count = first.component_count,
+                                  .iterations = 8});
+    EXPECT_GT(found.encoded.flops, 1.05 * alone.flops);
+    const auto& stages = found.encoded.stages;
+    EXPECT_EQ(stages.front().name, "survey");
+    EXPECT_EQ(std::count_if(stages.begin(), stages.end(),
+                            [](const Stage& stage) { return stage.name == "clustering"; }),
+              std::ssize(found.trials));
+    double seconds = 0.0;
+    for (const Stage& stage : stages) seconds += stage.seconds;
+    EXPECT_LE(seconds, found.seconds);
   }
 }
 
