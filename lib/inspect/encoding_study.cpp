@@ -7,6 +7,8 @@
 
 #include "cpca/coherence.h"
 #include "cpca/encoder.h"
+#include "cpca/iterative_encoder.h"
+#include "cpca/reclassify.h"
 #include "cpca/superclusters.h"
 
 namespace prt::inspect {
@@ -43,17 +45,19 @@ std::vector<double> counts_up_to(int most) {
 }  // namespace
 
 LinePlot error_over_storage(const signal::TransferSignal& signal) {
-  LinePlot plot{.title = "Squared error over storage, static CPCA",
-                .x_label = "numbers stored",
-                .y_label = "squared error",
-                .log_x = true,
-                .series = {}};
-  const int dimension = signal.dimension();
   const auto point_count = static_cast<int>(signal.vertex_count());
+  const int most = std::clamp(point_count / 32, 1, kMostClusters);
+  LinePlot plot{
+      .title = fmt::format(
+          "Squared error over storage, static CPCA of 1, 4, 16 ... clusters up to {}", most),
+      .x_label = "numbers stored",
+      .y_label = "squared error",
+      .log_x = true,
+      .series = {}};
+  const int dimension = signal.dimension();
   for (const int n : kVectorCounts) {
     if (n <= dimension) plot.series.push_back({fmt::format("n' = {}", n), {}, {}});
   }
-  const int most = std::clamp(point_count / 32, 1, kMostClusters);
   for (int clusters = 1; clusters <= most; clusters *= 4) {
     const cpca::Encoded encoded = cpca::encode_static(
         signal.values, dimension,
@@ -80,12 +84,13 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
   const cpca::Encoded fixed = cpca::encode_static(signal.values, signal.dimension(), options);
   plot.series.push_back(
       {"static", counts_up_to(most), errors_by_count(fixed.encoding, signal.values)});
-  const cpca::Encoded iterative =
-      cpca::encode_iterative(signal.values, signal.dimension(), options);
+  cpca::IterativeEncoder iterative(signal.values, static_cast<std::size_t>(signal.dimension()),
+                                   options, static_cast<std::size_t>(most) + 1);
   Series& curve = plot.series.emplace_back(Series{"iterative", {}, {}});
-  for (const cpca::Level& level : iterative.levels) {
-    curve.x.push_back(level.component_count);
-    curve.y.push_back(level.errors.back());
+  for (int n = 0; n <= most; ++n) {
+    iterative.run_level();
+    curve.x.push_back(n);
+    curve.y.push_back(iterative.measure());
   }
   Series& adaptive = plot.series.emplace_back(Series{"adaptive", {}, {}});
   for (const int n : kVectorCounts) {
@@ -109,9 +114,11 @@ CoherenceStudy study_coherence(const signal::TransferSignal& signal,
           .encoding;
   CoherenceStudy study;
   study.before = encoding.cluster_of_point;
+  cpca::Encoding reclassified = encoding;  // with clusters numbered as they are
+  cpca::reclassify(signal.values, indices, cpca::CoherenceOptions{}.error_budget, reclassified);
+  study.reclassified = std::move(reclassified.cluster_of_point);
   const cpca::Coherence coherence =
       cpca::make_coherent(signal.values, indices, signal.row_count, {}, encoding);
-  study.reclassified = encoding.cluster_of_point;
   study.superclustered = cpca::superclusters_of_points(encoding, coherence.first_clusters);
   return study;
 }

@@ -23,7 +23,8 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
 /// [Sloan03] Figure 5: an iterative encoding of the signal before and after coherence optimisation
 /// with the usual budgets.
 struct CoherenceStudy {
-  std::vector<std::uint32_t> before, reclassified, superclustered;  ///< labels of the points
+  std::vector<std::uint32_t> before, reclassified;  ///< cluster of each point, numbered alike
+  std::vector<std::uint32_t> superclustered;        ///< supercluster of each point
 };
 CoherenceStudy study_coherence(const signal::TransferSignal& signal,
                                const std::vector<std::uint32_t>& indices, int cluster_count,

@@ -74,7 +74,7 @@ Plot vector_count_plot(const mesh::Scene& scene, const cpca::Encoding& encoding)
     csv += fmt::format("{},{}\n", k, encoding.component_counts[k]);
   }
   const std::string caption =
-      fmt::format("vectors of a vertex's cluster: 0 (blue) to {}", encoding.component_count);
+      fmt::format("vectors of a vertex's cluster: 0 (blue) to {} (red)", encoding.component_count);
   return {"vectors", draw_scene(scene, colors, false, caption), csv};
 }
 
