@@ -19,18 +19,27 @@ constexpr std::size_t kLanes = 16;
 /// Points of the sample for each coefficient.
 constexpr std::size_t kSampleShare = 12;
 
-/// Every so many points: rows less the mean.
-std::vector<float> draw_rows(std::span<const float> signal, std::span<const float> mean,
-                             std::size_t step) {
-  const std::size_t n = mean.size(), count = (signal.size() / n + step - 1) / step;
-  std::vector<float> rows(count * n);
-  parallel_for(count, kBlock, [&](std::size_t begin, std::size_t end) {
+/// Every so many points of a signal.
+struct Draw {
+  std::span<const float> signal, mean;
+  std::size_t step, count;
+
+  /// Some of them, less the mean.
+  std::vector<float> rows(std::size_t begin, std::size_t end) const {
+    const std::size_t n = mean.size();
+    std::vector<float> rows((end - begin) * n);
     for (std::size_t p = begin; p < end; ++p) {
       const float* x = &signal[p * step * n];
-      for (std::size_t i = 0; i < n; ++i) rows[p * n + i] = x[i] - mean[i];
+      for (std::size_t i = 0; i < n; ++i) rows[(p - begin) * n + i] = x[i] - mean[i];
     }
-  });
-  return rows;
+    return rows;
+  }
+};
+
+Draw draw_points(std::span<const float> signal, std::span<const float> mean) {
+  const std::size_t n = mean.size(), point_count = signal.size() / n;
+  const std::size_t step = std::max<std::size_t>(1, point_count / (kSampleShare * n));
+  return {signal, mean, step, (point_count + step - 1) / step};
 }
 
 std::vector<float> mean_of(std::span<const float> signal, std::size_t n) {
@@ -51,15 +60,16 @@ std::vector<float> mean_of(std::span<const float> signal, std::size_t n) {
   return mean;
 }
 
-/// Eigenvectors of the covariance of the rows: `count` × n.
-std::vector<float> find_axes(std::span<const float> rows, std::size_t n, std::size_t count) {
-  const std::size_t row_count = rows.size() / n;
+/// Eigenvectors of the covariance of the points: `count` × n.
+std::vector<float> find_axes(const Draw& points, std::size_t count) {
+  const std::size_t n = points.mean.size();
   std::vector<double> covariance(n * n);
   parallel_for(n, kColumnBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<float> product((end - begin) * (n - begin));
-    for (std::size_t done = 0; done < row_count; done += kBlock) {
-      const std::size_t some = std::min(kBlock, row_count - done);
-      const float* first = &rows[done * n];
+    for (std::size_t done = 0; done < points.count; done += kBlock) {
+      const std::size_t some = std::min(kBlock, points.count - done);
+      const std::vector<float> rows = points.rows(done, done + some);
+      const float* first = rows.data();
       linalg::gemm(1.0f, {first + begin, some, end - begin, n}, Transpose::yes,
                    {first + begin, some, n - begin, n}, Transpose::no, 0.0f,
                    {product.data(), end - begin, n - begin});
@@ -145,8 +155,7 @@ PrincipalAxes find_principal_axes(std::span<const float> signal, std::size_t dim
   const std::size_t point_count = signal.size() / dimension;
   PrincipalAxes axes;
   axes.mean = mean_of(signal, dimension);
-  const std::size_t step = std::max<std::size_t>(1, point_count / (kSampleShare * dimension));
-  axes.axes = find_axes(draw_rows(signal, axes.mean, step), dimension, count);
+  axes.axes = find_axes(draw_points(signal, axes.mean), count);
   axes.stride = (count + kLanes - 1) / kLanes * kLanes;
   axes.scales = find_scales(axes, signal);
   axes.rows.resize(point_count * axes.stride);
