@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "core/error.h"
@@ -10,7 +11,9 @@
 #include "gltf/document.h"
 #include "mesh/frame.h"
 #include "runtime/triangle_order.h"
+#include "sh/basis.h"
 #include "sh/hemisphere.h"
+#include "sh/radiance_metric.h"
 
 namespace prt::runtime {
 
@@ -128,10 +131,15 @@ Model load_model(const std::filesystem::path& glb, const std::filesystem::path& 
 
 std::vector<float> relative_errors(const Model& model) {
   if (!model.transfer || !model.signal) return {};
-  const std::vector<double> errors =
-      cpca::point_errors(model.transfer->encoding, model.signal->values);
+  std::vector<float> values = model.signal->values;
+  cpca::Encoding encoding = model.transfer->encoding;
+  const sh::RadianceMetric metric(model.row_count(), sh::row_size(model.band_count()));
+  for (const std::span<float> rows :
+       {std::span(values), std::span(encoding.means), std::span(encoding.bases)})
+    metric.apply(rows);
+  const std::vector<double> errors = cpca::point_errors(encoding, values);
   double energy = 0.0;
-  for (const float value : model.signal->values) energy += double{value} * value;
+  for (const float value : values) energy += double{value} * value;
   const double mean_energy = energy / static_cast<double>(errors.size());
   std::vector<float> relative(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i)

@@ -42,7 +42,8 @@ Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransf
 Model load_model(const std::filesystem::path& glb, const std::filesystem::path& transfer = {});
 
 /// Root mean square error of each vertex' compressed transfer, relative to the root mean square
-/// of the signal. Empty unless the model has both transfers.
+/// of the signal; of glossy transfer as exit radiance (sh/radiance_metric.h). Empty unless the
+/// model has both transfers.
 std::vector<float> relative_errors(const Model& model);
 /// Their root mean square: the relative error of the whole compression. 0 without both transfers.
 float relative_error(const Model& model);

@@ -98,14 +98,18 @@ void add_storage(cli::Options& app, cli::Option* signal, cpca::StorageOptions& o
       ->excludes(signal);
 }
 
+/// By the errors that counted, where the report has them.
 void log_summary(const nlohmann::ordered_json& json) {
+  const auto figure = [&](const std::string& name) {
+    return json.value("weighted_" + name, json[name].get<double>());
+  };
   log::info(
       "{} points of {} coefficients in {} clusters of {} components: {:.3g} times smaller, "
       "relative error {:.3f}% (SE {:.6g})",
       json["point_count"].get<std::size_t>(), json["dimension"].get<int>(),
       json["cluster_count"].get<int>(), json["component_count"].get<int>(),
-      json["compression_ratio"].get<double>(), 100.0 * json["relative_rmse"].get<double>(),
-      json["squared_error"].get<double>());
+      json["compression_ratio"].get<double>(), 100.0 * figure("relative_rmse"),
+      figure("squared_error"));
 }
 
 }  // namespace

@@ -29,8 +29,11 @@ struct Input {
   signal::TransferSignal transfer;  ///< of a plain signal only the values
   std::size_t dimension = 0;
   std::vector<float> coefficient_weights, point_weights;
+  std::optional<sh::RadianceMetric> metric;  ///< of matrices, unless coefficients have weights
 
-  Weights weights() const { return {point_weights, coefficient_weights}; }
+  Weights weights() const {
+    return {point_weights, coefficient_weights, metric ? &*metric : nullptr};
+  }
 };
 
 /// What a signal may take: beside it encoders need half as much again.
@@ -56,6 +59,9 @@ Input load(const Job& job, Report& report) {
   if (!job.coefficient_weights.empty()) {
     input.coefficient_weights =
         read_coefficient_weights(job.coefficient_weights, input.dimension, signal_bytes_limit());
+  } else if (input.transfer.row_count > 1) {
+    const auto bands = static_cast<std::size_t>(input.transfer.band_count);
+    input.metric.emplace(input.transfer.row_count, bands * bands);
   }
   if (job.weigh_by_area) input.point_weights = vertex_areas(input.scene);
   // Only now, as it reads the files: those that are too large are refused before.
@@ -267,6 +273,7 @@ void run(const Job& job, Report& report) {
   check(job);
   Input input = load(job, report);
   std::vector<float>& values = input.transfer.values;
+  if (input.metric) input.metric->apply(values);
   const Scaling scaling(values, input.coefficient_weights);
   scaling.apply(values);
   cpca::Encoded encoded = encode(job, input, report);
@@ -275,6 +282,11 @@ void run(const Job& job, Report& report) {
   if (input.document) storage = prepare_storage(job, input, encoded.encoding, report);
   scaling.undo(values);
   scaling.undo(storage.weight_format, encoded.encoding);
+  if (input.metric) {
+    for (const std::span<float> rows :
+         {std::span(values), std::span(encoded.encoding.means), std::span(encoded.encoding.bases)})
+      input.metric->undo(rows);
+  }
   rescale(scaling.square(), encoded, storage);
   report_encoding(job, input, encoded, report);
   if (input.document) report.json()["weights"] = cpca::name_of(storage.weight_format);

@@ -74,16 +74,21 @@ Errors measure(const cpca::Encoding& encoding, std::span<const float> signal,
   const auto n = static_cast<std::size_t>(encoding.dimension);
   std::vector<Errors> blocks(block_count(encoding.point_count, kPointBlock));
   parallel_for(encoding.point_count, kPointBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> row(n);
+    std::vector<float> row(n), exact(n);
     Errors& block = blocks[begin / kPointBlock];
     for (std::size_t p = begin; p < end; ++p) {
       cpca::reconstruct(encoding, p, row);
+      std::copy_n(&signal[p * n], n, exact.begin());
+      if (weights.metric != nullptr) {
+        weights.metric->apply(row);
+        weights.metric->apply(exact);
+      }
       const double point_weight = weights.points.empty() ? 1.0 : double{weights.points[p]};
       double error = 0.0;
       for (std::size_t j = 0; j < n; ++j) {
         const double weight =
             point_weight * (weights.coefficients.empty() ? 1.0 : double{weights.coefficients[j]});
-        const double value = signal[p * n + j], difference = value - double{row[j]};
+        const double value{exact[j]}, difference = value - double{row[j]};
         error += weight * difference * difference;
         block.energy += weight * value * value;
       }

@@ -9,6 +9,7 @@
 
 #include "cpca/encoding.h"
 #include "mesh/scene.h"
+#include "sh/radiance_metric.h"
 
 namespace prt::compress {
 
@@ -20,11 +21,13 @@ std::vector<float> vertex_areas(const mesh::Scene& scene);
 std::vector<float> read_coefficient_weights(const std::filesystem::path& path,
                                             std::size_t dimension, std::size_t max_bytes);
 
-/// Of squares: of each point and each coefficient; empty: 1 each.
+/// Of squares: of each point and each coefficient; empty: 1 each. With a metric, of its
+/// coordinates.
 struct Weights {
   std::span<const float> points = {}, coefficients = {};
+  const sh::RadianceMetric* metric = nullptr;
 
-  bool empty() const { return points.empty() && coefficients.empty(); }
+  bool empty() const { return points.empty() && coefficients.empty() && metric == nullptr; }
 };
 
 struct Errors {
@@ -37,6 +40,7 @@ struct Errors {
 };
 
 /// Squared errors e_p = w_p Σ_j w_j (x_pj - x̃_pj)² of an encoding as it is, summed in double.
+/// Of x and x̃ in the metric's coordinates, where there is one.
 Errors measure(const cpca::Encoding& encoding, std::span<const float> signal,
                const Weights& weights);
 

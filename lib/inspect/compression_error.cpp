@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/error.h"
 #include "gltf/document.h"
 #include "inspect/statistics.h"
+#include "sh/basis.h"
+#include "sh/radiance_metric.h"
 #include "signal/transfer_signal.h"
 
 namespace prt::inspect {
@@ -66,15 +69,19 @@ std::vector<double> energies(const signal::TransferSignal& signal) {
 CompressionError compression_error(const std::filesystem::path& model_path,
                                    const std::filesystem::path& transfer_path) {
   const gltf::Document document = gltf::Document::load(model_path);
-  const auto transfer = document.precomputed_transfer();
+  auto transfer = document.precomputed_transfer();
   if (!transfer) {
     throw_bad_input("holds no compressed transfer",
                     {.file = model_path.string(), .advice = "Run prt-compress on it."});
   }
   const mesh::Scene scene = document.scene();
-  const signal::TransferSignal signal = signal::read_transfer(transfer_path);
+  signal::TransferSignal signal = signal::read_transfer(transfer_path);
   signal::check_belongs_to(signal, scene, transfer_path);
   check_shape(*transfer, signal, transfer_path);
+  const sh::RadianceMetric metric(signal.row_count, sh::row_size(signal.band_count));
+  for (const std::span<float> rows : {std::span(signal.values), std::span(transfer->encoding.means),
+                                      std::span(transfer->encoding.bases)})
+    metric.apply(rows);
 
   const std::vector<double> errors = cpca::point_errors(transfer->encoding, signal.values);
   const std::vector<double> energy = energies(signal);

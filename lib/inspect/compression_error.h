@@ -1,4 +1,5 @@
-// How far a compressed transfer is from the one it was made of, vertex by vertex.
+// How far a compressed transfer is from the one it was made of, vertex by vertex; that of matrices
+// as exit radiance (sh/radiance_metric.h).
 #pragma once
 
 #include <vector>

@@ -102,6 +102,21 @@ TEST_F(CompressedModel, KeepsToTheBoundByItsWeights) {
   }
 }
 
+TEST_F(CompressedModel, OfMatricesKeepsToTheBoundAsExitRadiance) {
+  signal_.row_count = 4;
+  signal_.band_count = 2;
+  signal::write_transfer(folder_ / "a.transfer.exr", signal_);
+  job_.bound.max_error = 0.02;
+  Report report("test");
+  run(job_, report);
+  const sh::RadianceMetric metric(4, 4);
+  const double found = stored({.metric = &metric}).relative_rmse();
+  EXPECT_LE(found, 0.02);
+  EXPECT_NEAR(report.json()["weighted_relative_rmse"].get<double>(), found, 1e-5 * found);
+  EXPECT_NEAR(report.json()["relative_rmse"].get<double>(), stored({}).relative_rmse(), 1e-7);
+  EXPECT_GT(stored({}).relative_rmse(), 1.2 * found);  // coefficients tell something else
+}
+
 TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
   job_.bound.max_error = 0.0005;
   job_.storage.weights = cpca::WeightFormat::unorm8;
