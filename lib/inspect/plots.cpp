@@ -18,6 +18,8 @@
 #include "inspect/line_plot.h"
 #include "inspect/mesh_picture.h"
 #include "inspect/statistics.h"
+#include "sh/basis.h"
+#include "sh/radiance_metric.h"
 
 namespace prt::inspect {
 
@@ -169,7 +171,8 @@ std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
                                        const std::filesystem::path& transfer_path) {
   const CompressedModel model = load(path);
   const CompressionError error = compression_error(path, transfer_path);
-  const signal::TransferSignal signal = signal::read_transfer(transfer_path);
+  signal::TransferSignal signal = signal::read_transfer(transfer_path);
+  sh::RadianceMetric(signal.row_count, sh::row_size(signal.band_count)).apply(signal.values);
   const Histogram histogram = make_histogram(error.relative);
   std::vector<Plot> plots;
   plots.push_back({"error-histogram",
