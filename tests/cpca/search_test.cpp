@@ -92,12 +92,12 @@ TEST(EncodeWithin, TakesAllMethods) {
 
 // Rates of the report are all operations over all seconds.
 TEST(EncodeWithin, CountsTheOperationsAndSecondsOfAllItsEncodings) {
-  const auto signal = make_surface(3000, kDimension);
+  const auto signal = make_surface(3000, kSearchDimension);
   for (const Method method : {Method::fixed, Method::iterative}) {
     const Found found = encode_within({.max_error = 0.02, .max_bytes = {}}, method, signal,
-                                      kDimension, {.iterations = 8});
+                                      kSearchDimension, {.iterations = 8});
     const Choice first = found.trials.front().choice;
-    const Encoded alone = encode(method, signal, kDimension,
+    const Encoded alone = encode(method, signal, kSearchDimension,
                                  {.cluster_count = first.cluster_count,
                                   .component_count = first.component_count,
                                   .iterations = 8});
