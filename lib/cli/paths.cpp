@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/file.h"
 
 namespace prt::cli {
 
@@ -29,8 +29,7 @@ void check_different(const fs::path& written, const char* role, const fs::path& 
 }
 
 void check_extension(const Output& output) {
-  std::string found = output.path.extension().string();
-  std::ranges::transform(found, found.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string found = lower_extension(output.path);
   if (std::ranges::count(output.extensions, found) == 0) {
     throw Error(ErrorKind::usage, "not a kind of file that this tool writes",
                 {.file = output.path.string(),

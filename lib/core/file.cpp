@@ -48,4 +48,12 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t limit)
   return read_whole<std::string>(path, limit);
 }
 
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string text = path.extension().string();
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
 }  // namespace prt

@@ -20,4 +20,7 @@ std::vector<std::byte> read_file(const std::filesystem::path& path,
                                  std::size_t limit = kMaxInputBytes);
 std::string read_text_file(const std::filesystem::path& path, std::size_t limit = kMaxInputBytes);
 
+/// The ending of the file's name with its dot, ASCII letters in lower case: ".exr" for a.EXR.
+std::string lower_extension(const std::filesystem::path& path);
+
 }  // namespace prt

@@ -226,9 +226,7 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, std:
 }
 
 void write_image(const std::filesystem::path& path, const Image& image, bool no_clobber) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_extension(path);
   if (extension != ".exr" && extension != ".png") {
     throw Error(ErrorKind::usage, "unknown kind of image",
                 {.file = path.string(), .found = extension, .expected = ".exr or .png"});

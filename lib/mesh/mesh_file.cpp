@@ -1,6 +1,5 @@
 #include "mesh/mesh_file.h"
 
-#include <algorithm>
 #include <string>
 
 #include "core/error.h"
@@ -8,13 +7,6 @@
 namespace prt::mesh {
 
 namespace {
-
-std::string ending(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
-  return text;
-}
 
 Scene one_primitive(TriangleMesh mesh, const std::filesystem::path& path) {
   Scene scene;
@@ -25,7 +17,7 @@ Scene one_primitive(TriangleMesh mesh, const std::filesystem::path& path) {
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  const std::string kind = ending(path);
+  const std::string kind = lower_extension(path);
   return kind == ".obj" || kind == ".ply" || kind == ".off" || kind == ".stl";
 }
 
@@ -36,7 +28,7 @@ Scene read_mesh_file(const std::filesystem::path& path, const ReadLimits& limits
                                                   .expected = ".obj, .ply, .off or .stl"});
   }
   const std::string text = read_text_file(path, limits.max_file_bytes);
-  const std::string kind = ending(path);
+  const std::string kind = lower_extension(path);
   Scene scene = kind == ".obj"   ? read_obj(text, path, limits)
                 : kind == ".ply" ? one_primitive(read_ply(text, path), path)
                 : kind == ".off" ? one_primitive(read_off(text, path), path)

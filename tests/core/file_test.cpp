@@ -18,6 +18,12 @@ TEST(ReadFile, RejectsMissingFilesFoldersAndLargeFiles) {
   EXPECT_GT(read_file("core/file_test.cpp").size(), 10u);
 }
 
+TEST(LowerExtension, IsTheEndingWithItsDotInLowerCase) {
+  EXPECT_EQ(lower_extension("A/B.C.GlB"), ".glb");
+  EXPECT_EQ(lower_extension("a.\xc9"), ".\xc9");
+  EXPECT_EQ(lower_extension("a.EXR/b"), "");
+}
+
 TEST(Checked, OverflowIsAnErrorInsteadOfAWrap) {
   EXPECT_EQ(checked_multiply(3, 5), 15u);
   EXPECT_EQ(checked_add(3, 5), 8u);
