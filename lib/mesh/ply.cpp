@@ -140,6 +140,8 @@ class PlyReader {
   }
 
   void read_vertices(const PlyElement& element) {
+    // Another one might have other properties: attributes would be of different lengths.
+    if (mesh_.vertex_count() > 0) reject("a second element vertex", "header");
     const auto column = [&](const char* name) {
       const auto found = std::find_if(element.properties.begin(), element.properties.end(),
                                       [&](const PlyProperty& p) { return p.name == name; });

@@ -136,6 +136,16 @@ TEST(PlyRead, RejectsBadIndicesAndHeaders) {
   EXPECT_HAS(ply_error(replaced(kPly, "ascii", "base64") + kPlyBody), "unknown PLY format");
 }
 
+TEST(PlyRead, RejectsASecondElementOfVertices) {
+  EXPECT_HAS(ply_error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                       "property float y\nproperty float z\nproperty float nx\n"
+                       "property float ny\nproperty float nz\nelement vertex 2\n"
+                       "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+                       "property list uchar int vertex_indices\nend_header\n"
+                       "0 0 0 0 0 1\n1 0 0\n0 1 0\n3 0 1 2\n"),
+             "a second element vertex");
+}
+
 TEST(OffRead, RejectsWhatIsWrong) {
   const std::string whole = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   EXPECT_EQ(off_error(whole), "no error");
