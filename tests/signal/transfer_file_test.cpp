@@ -289,9 +289,11 @@ TEST_F(TransferFile, RefusesHeadersThatDoNotFit) {
       {set_int("prtkit_version", 2), "found 2, expected 1 to 1"},
       {set_int("prtkit_band_count", 0), "prtkit_band_count"},
       {set_int("prtkit_band_count", 1 << 20), "prtkit_band_count"},
+      {set_int("prtkit_band_count", 17), "found 17, expected 1 to 16"},  // sh has no more
       {set_int("prtkit_band_count", 2),
        "channels: not a transfer file of prtkit: found 1, expected 4"},
       {set_int("prtkit_row_count", -1), "prtkit_row_count"},
+      {set_int("prtkit_row_count", 257), "found 257, expected 1 to 256"},
       {set_int("prtkit_channel_count", 2), "prtkit_channel_count"},
       {set_int("prtkit_bounce_count", -1), "prtkit_bounce_count"},
       {[](Header& header) { header.insert("prtkit_seed", Imf::StringAttribute("-1")); },
