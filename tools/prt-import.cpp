@@ -17,6 +17,7 @@ constexpr std::pair<const char*, std::size_t RepairReport::*> kRepairKeys[] = {
     {"duplicate_triangle_count", &RepairReport::duplicate_triangle_count},
     {"computed_normal_count", &RepairReport::computed_normal_count},
     {"split_vertex_count", &RepairReport::split_vertex_count},
+    {"mended_attribute_count", &RepairReport::mended_attribute_count},
     {"nonmanifold_triangle_count", &RepairReport::nonmanifold_triangle_count},
     {"nonmanifold_vertex_count", &RepairReport::nonmanifold_vertex_count},
     {"boundary_edge_count", &RepairReport::boundary_edge_count}};

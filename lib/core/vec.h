@@ -22,8 +22,12 @@ inline Vec3 transform_vector(const Matrix4& to_from, const Vec3& v) {
   return result;
 }
 
-inline bool is_finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+template <class Vec>
+bool is_finite(const Vec& v) {
+  for (unsigned c = 0; c < Vec::dimensions(); ++c) {
+    if (!std::isfinite(v[static_cast<int>(c)])) return false;
+  }
+  return true;
 }
 
 }  // namespace prt

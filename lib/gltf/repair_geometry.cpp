@@ -134,7 +134,8 @@ class PrimitiveRepair {
     if (mesh.triangle_count() == 0) return imported;
     check_transform(use_.world_from_local, mesh, where_);
     const bool same = mesh.triangle_count() == triangle_count && mesh.vertex_count() == vertices &&
-                      mesh.normals == normals;
+                      mesh.normals == normals && had_tangents == !mesh.tangents.empty() &&
+                      imported.repair.mended_attribute_count == 0;
     if (options_.max_edge > 0.0f) {
       const std::size_t repaired = mesh.vertex_count();
       mesh::tessellate(mesh, options_.max_edge, options_.max_triangles, use_.world_from_local);

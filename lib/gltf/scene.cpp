@@ -197,6 +197,12 @@ void check_ready(const tinygltf::Primitive& primitive, const mesh::TriangleMesh&
   for (const Vec3& p : mesh.positions) {
     if (!is_finite(p)) reject("a position that is not finite");
   }
+  if (!std::all_of(mesh.texcoords.begin(), mesh.texcoords.end(), is_finite<Vec2>)) {
+    reject("a texture coordinate that is not finite");
+  }
+  if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), is_finite<Vec4>)) {
+    reject("a colour that is not finite");
+  }
   if (!has_unit_normals(mesh)) reject("a normal that is not of unit length");
 }
 

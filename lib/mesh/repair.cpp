@@ -128,6 +128,29 @@ std::vector<std::uint32_t> complete_normals(TriangleMesh& mesh, const RepairOpti
   return same;
 }
 
+// Texture coordinates become (0, 0) and colours white where they are not finite; colours are
+// clamped, as glTF wants them. Bad tangents all go: they follow from the texture coordinates.
+void mend_attributes(TriangleMesh& mesh, RepairReport& report) {
+  std::vector<bool> mended(mesh.vertex_count());
+  for (std::size_t i = 0; i < mesh.texcoords.size(); ++i) {
+    if (is_finite(mesh.texcoords[i])) continue;
+    mesh.texcoords[i] = Vec2(0.0f);
+    mended[i] = true;
+  }
+  for (std::size_t i = 0; i < mesh.colors.size(); ++i) {
+    Vec4 color = is_finite(mesh.colors[i]) ? mesh.colors[i] : Vec4(1.0f);
+    for (int c = 0; c < 4; ++c) color[c] = std::clamp(color[c], 0.0f, 1.0f);
+    if (color == mesh.colors[i]) continue;
+    mesh.colors[i] = color;
+    mended[i] = true;
+  }
+  report.mended_attribute_count +=
+      static_cast<std::size_t>(std::count(mended.begin(), mended.end(), true));
+  if (!std::all_of(mesh.tangents.begin(), mesh.tangents.end(), is_finite<Vec4>)) {
+    mesh.tangents.clear();
+  }
+}
+
 template <class T>
 void gather(std::vector<T>& values, const std::vector<std::uint32_t>& source) {
   if (values.empty()) return;
@@ -148,6 +171,7 @@ void RepairReport::add(const RepairReport& other) {
   nonfinite_triangle_count += other.nonfinite_triangle_count;
   computed_normal_count += other.computed_normal_count;
   split_vertex_count += other.split_vertex_count;
+  mended_attribute_count += other.mended_attribute_count;
   nonmanifold_triangle_count += other.nonmanifold_triangle_count;
   nonmanifold_vertex_count += other.nonmanifold_vertex_count;
   boundary_edge_count += other.boundary_edge_count;
@@ -188,6 +212,7 @@ std::vector<std::uint32_t> repair(TriangleMesh& mesh, const RepairOptions& optio
   report.nonfinite_vertex_count += nonfinite;
   report.welded_vertex_count += welded;
   report.unreferenced_vertex_count += before - mesh.vertex_count() - nonfinite - welded;
+  mend_attributes(mesh, report);
 
   const std::vector<std::uint32_t> split = complete_normals(mesh, options, report);
   std::vector<std::uint32_t> composed;

@@ -1,5 +1,6 @@
 // Makes a triangle mesh that baking can trust out of whatever a file held: indices in range, finite
-// vertices, no degenerate or double triangles, every vertex used, unit normals.
+// vertices, no degenerate or double triangles, every vertex used, unit normals, finite texture
+// coordinates, colours in [0, 1].
 #pragma once
 
 #include <cstddef>
@@ -34,6 +35,7 @@ struct RepairReport {
   std::size_t nonfinite_triangle_count = 0;    ///< dropped with a vertex
   std::size_t computed_normal_count = 0;       ///< vertices whose normal was computed
   std::size_t split_vertex_count = 0;          ///< added, so that edges stay hard
+  std::size_t mended_attribute_count = 0;      ///< vertices: not finite, or colour out of [0, 1]
   std::size_t nonmanifold_triangle_count = 0;  ///< kept: more than two faces at an edge
   std::size_t nonmanifold_vertex_count = 0;    ///< kept: bow ties
   std::size_t boundary_edge_count = 0;         ///< edges of one face

@@ -29,8 +29,11 @@ float largest_coordinate(const Vec3& p) {
 void check_vertices(const mesh::Primitive& primitive) {
   const mesh::TriangleMesh& mesh = primitive.mesh;
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    if (is_finite(mesh.positions[i]) && is_finite(mesh.normals[i])) continue;
-    throw_bad_input("position or normal is not finite",
+    if (is_finite(mesh.positions[i]) && is_finite(mesh.normals[i]) &&
+        (mesh.colors.empty() || is_finite(mesh.colors[i]))) {
+      continue;
+    }
+    throw_bad_input("position, normal or colour is not finite",
                     {.element = fmt::format("{}, vertex {}", primitive.name, i)});
   }
 }

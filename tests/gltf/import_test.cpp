@@ -166,6 +166,21 @@ TEST_F(GltfImport, DropsBrokenTrianglesAndCountsThem) {
   EXPECT_EQ(result.document.scene().triangle_count(), 2u);
 }
 
+TEST_F(GltfImport, MendsColoursTextureCoordinatesAndTangentsOfWhatIsOtherwiseGood) {
+  mesh::Scene scene = samples::scene();
+  scene.primitives[0].mesh.colors[1] = {2, 0.5f, 0, 1};
+  scene.primitives[0].mesh.texcoords[2].x = std::nanf("");
+  scene.primitives[1].mesh.tangents.assign(3, {1, 0, std::nanf(""), 1});
+  Document::from_scene(scene).save_glb(folder_ / "a.glb");
+  const ImportResult result = import_file(folder_ / "a.glb", {});
+  EXPECT_EQ(result.meshes[0].repair.mended_attribute_count, 2u);
+  const mesh::Scene after = result.document.scene();
+  EXPECT_EQ(after.primitives[0].mesh.colors[1], Vec4(1, 0.5f, 0, 1));
+  EXPECT_EQ(after.primitives[0].mesh.texcoords[2], Vec2(0));
+  ASSERT_EQ(after.primitives[1].mesh.tangents.size(), 3u);
+  EXPECT_TRUE(is_finite(after.primitives[1].mesh.tangents[0]));
+}
+
 TEST_F(GltfImport, RejectsWhatHasNoTriangleLeft) {
   ordered_json json = samples::triangle_json();
   json["nodes"][0].erase("mesh");

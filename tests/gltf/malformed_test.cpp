@@ -2,6 +2,7 @@
 // the element.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "error_of.h"
@@ -308,6 +309,15 @@ TEST(GltfRead, RejectsPositionsThatAreNotFinite) {
   uri.replace(uri.find(',') + 1, 6, "AADAfw");  // the first x is NaN
   json["buffers"][0]["uri"] = uri;
   EXPECT_ERROR(json, "a position that is not finite");
+}
+
+TEST(GltfRead, RejectsColoursAndTextureCoordinatesThatAreNotFinite) {
+  mesh::Scene scene = samples::scene();
+  scene.primitives[1].mesh.colors[2].y = std::nanf("");
+  EXPECT_ERROR([&] { Document::from_scene(scene).scene(); }, "a colour that is not finite");
+  scene = samples::scene();
+  scene.primitives[0].mesh.texcoords[0].x = std::nanf("");
+  EXPECT_ERROR([&] { Document::from_scene(scene).scene(); }, "a texture coordinate that is not");
 }
 
 TEST(GltfRead, RejectsEmptyScene) {

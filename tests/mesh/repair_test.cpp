@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/error.h"
@@ -160,6 +161,28 @@ TEST(Repair, KeepsGoodNormalsAndReplacesBadOnes) {
   EXPECT_EQ(mesh.normals[1], Vec3(0, 0, 1));
   EXPECT_EQ(mesh.normals[2], Vec3(0.0f, 0.6f, 0.8f));
   EXPECT_NEAR((mesh.normals[0] - Vec3(-1).normalized()).length(), 0.0f, 1e-6f);
+}
+
+TEST(Repair, MendsColoursAndTextureCoordinatesAndCountsThem) {
+  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
+  TriangleMesh mesh = cube();
+  mesh.texcoords.assign(8, Vec2(0.5f));
+  mesh.colors.assign(8, Vec4(0.25f));
+  mesh.tangents.assign(8, Vec4(1.0f, 0.0f, 0.0f, nan));
+  mesh.texcoords[1] = Vec2(nan, 0.5f);
+  mesh.colors[1] = Vec4(nan, 0.5f, 0.5f, 1.0f);
+  mesh.texcoords[2] = Vec2(0.5f, -infinity);
+  mesh.colors[3] = Vec4(2.0f, -1.0f, 0.5f, 1.0f);
+  RepairReport report;
+  repair(mesh, {.crease_angle_degrees = 180.0f}, report);
+  EXPECT_EQ(report.mended_attribute_count, 3u);
+  EXPECT_EQ(mesh.texcoords[1], Vec2(0.0f));
+  EXPECT_EQ(mesh.texcoords[2], Vec2(0.0f));
+  EXPECT_EQ(mesh.texcoords[3], Vec2(0.5f));
+  EXPECT_EQ(mesh.colors[1], Vec4(1.0f));
+  EXPECT_EQ(mesh.colors[2], Vec4(0.25f));
+  EXPECT_EQ(mesh.colors[3], Vec4(1.0f, 0.0f, 0.5f, 1.0f));
+  EXPECT_TRUE(mesh.tangents.empty());  // to be computed
 }
 
 TEST(Topology, CountsEdgesOfThreeFacesAndBowTies) {

@@ -171,7 +171,7 @@ TEST(Shadow, EmptySceneGivesAnEmptySignal) {
   EXPECT_TRUE(compute({}, {.bounce_count = 1}).values.empty());
 }
 
-TEST(Shadow, RefusesBadOptionsAndBadNormals) {
+TEST(Shadow, RefusesBadOptionsNormalsAndColours) {
   const auto kind_of = [](const mesh::Scene& scene, const DiffuseOptions& options) {
     try {
       compute(scene, options);
@@ -187,8 +187,14 @@ TEST(Shadow, RefusesBadOptionsAndBadNormals) {
   EXPECT_EQ(kind_of(scene, {.ray_count = 0}), ErrorKind::usage);
   EXPECT_EQ(kind_of(scene, {.bounce_count = -1}), ErrorKind::usage);
   EXPECT_EQ(kind_of(scene, {.bounce_count = 1, .shadowed = false}), ErrorKind::usage);
-  scene.primitives[0].mesh.normals[2].y = NAN;
-  EXPECT_EQ(kind_of(scene, {}), ErrorKind::bad_input);
+  scene.primitives[0].mesh.colors.assign(scene.vertex_count(), Vec4(1.0f));
+  EXPECT_NO_THROW(compute(scene, {.ray_count = 16}));
+  mesh::Scene bad = scene;
+  bad.primitives[0].mesh.normals[2].y = NAN;
+  EXPECT_EQ(kind_of(bad, {}), ErrorKind::bad_input);
+  bad = scene;
+  bad.primitives[0].mesh.colors[2].z = NAN;
+  EXPECT_EQ(kind_of(bad, {}), ErrorKind::bad_input);
 }
 
 TEST(Hemisphere, AnswersAlikeWithoutTheShadowTree) {
