@@ -32,7 +32,8 @@ class Document {
   static Document parse(std::span<const std::byte> bytes, const std::filesystem::path& path,
                         const Limits& limits = {});
 
-  /// A new document with one node and mesh for each primitive of the scene.
+  /// A new document with one node and mesh for each primitive of the scene. Of its material, the
+  /// texture stays only if it has texture coordinates.
   static Document from_scene(const mesh::Scene& scene);
 
   Document(Document&&) noexcept;

@@ -1,4 +1,5 @@
 // Document::from_scene: a new file of a scene that came from elsewhere.
+#include "core/log.h"
 #include "gltf/accessor.h"
 #include "gltf/geometry.h"
 #include "gltf/png.h"
@@ -46,10 +47,23 @@ Json make_material(State& state, const mesh::Material& material) {
   return json;
 }
 
-void add_primitive(State& state, const mesh::Primitive& primitive) {
+// The primitive's; without texture coordinates, one more without the texture, which would need
+// them.
+int material_of(const mesh::Primitive& primitive, std::vector<mesh::Material>& materials) {
+  if (primitive.material < 0 || !primitive.mesh.texcoords.empty()) return primitive.material;
+  mesh::Material plain = materials[static_cast<std::size_t>(primitive.material)];
+  if (plain.base_color_image < 0) return primitive.material;
+  log::warning("mesh {}: not all corners have texture coordinates, texture dropped",
+               primitive.name);
+  plain.base_color_image = -1;
+  materials.push_back(std::move(plain));
+  return static_cast<int>(materials.size()) - 1;
+}
+
+void add_primitive(State& state, const mesh::Primitive& primitive, int material) {
   Json json{{"attributes", Json::object()}};
   write_geometry(state, json, primitive.mesh);
-  if (primitive.material >= 0) json["material"] = primitive.material;
+  if (material >= 0) json["material"] = material;
   Json& meshes = make_array(state.root, "meshes");
   Json& nodes = make_array(state.root, "nodes");
   Json node{{"mesh", meshes.size()}};
@@ -69,9 +83,12 @@ Document Document::from_scene(const mesh::Scene& scene) {
   state->root["asset"]["version"] = "2.0";
   state->root["scene"] = 0;
   state->root["scenes"][0]["nodes"] = Json::array();
-  for (const mesh::Primitive& primitive : scene.primitives) add_primitive(*state, primitive);
+  std::vector<mesh::Material> materials = scene.materials;
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    add_primitive(*state, primitive, material_of(primitive, materials));
+  }
   add_images(*state, scene);
-  for (const mesh::Material& material : scene.materials) {
+  for (const mesh::Material& material : materials) {
     Json json = make_material(*state, material);
     make_array(state->root, "materials").push_back(std::move(json));
   }

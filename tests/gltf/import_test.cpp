@@ -188,6 +188,25 @@ TEST_F(GltfImport, RejectsWhatHasNoTriangleLeft) {
   EXPECT_THROW(import_file(folder_.write("a.obj", "v 0 0 0\nf 1 1 1\n"), {}), Error);
 }
 
+// glTF wants texture coordinates wherever a texture is.
+TEST_F(GltfImport, DropsTheTextureWhereTextureCoordinatesAreMissing) {
+  image::write_image(folder_ / "a.png", image::Image(2, 2, 3));
+  folder_.write("a.mtl", "newmtl red\nKd 1 0 0\nmap_Kd a.png\nnewmtl black\nmap_Kd a.png\n");
+  const auto path = folder_.write("a.obj",
+                                  "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+                                  "usemtl red\nf 1/1 2/1 3\nusemtl black\nf 3/1 2/1 1/1\n");
+  const mesh::Scene scene = import_file(path, {}).document.scene();
+  ASSERT_EQ(scene.primitives.size(), 2u);
+  EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[0], 0), Vec3(1, 0, 0));
+  EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[1], 0), Vec3(0));
+  const auto has_texture = [&](std::size_t p) {
+    const auto material = static_cast<std::size_t>(scene.primitives[p].material);
+    return scene.materials[material].base_color_image >= 0;
+  };
+  EXPECT_FALSE(has_texture(0));
+  EXPECT_TRUE(has_texture(1));
+}
+
 TEST_F(GltfImport, ColoursOnlyWhatHasNoMaterial) {
   folder_.write("a.mtl", "newmtl red\nKd 1 0 0\n");
   const auto path = folder_.write("a.obj",
