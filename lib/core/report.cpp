@@ -46,8 +46,12 @@ void Report::write(const std::filesystem::path& path, bool no_clobber) {
   json_["threads"] = thread_count();
   json_["simd"] = simd_level_name(simd_level());
   AtomicFile file(path, no_clobber);
-  file.write(json_.dump(2) + "\n");
+  file.write(json_text(json_, 2) + "\n");
   file.commit();
+}
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 std::size_t peak_memory_bytes() {

@@ -48,6 +48,10 @@ class StageTimer {
   Stopwatch stopwatch_;
 };
 
+/// JSON as text, in one line or indented. Names and paths may hold any bytes: those that are not
+/// UTF-8 become U+FFFD, instead of an exception.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
 /// Peak resident memory of this process so far, in bytes.
 std::size_t peak_memory_bytes();
 

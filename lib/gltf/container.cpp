@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/reference.h"
+#include "core/report.h"
 
 namespace prt::gltf {
 
@@ -250,7 +251,7 @@ Bytes make_glb(const State& state) {
   make_object(root, "asset")["generator"] = "prtkit " PRTKIT_VERSION;
   root["asset"]["version"] = "2.0";
   Bytes bin = merge_buffers(state, root);
-  std::string text = root.dump();
+  std::string text = json_text(root);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   bin.resize((bin.size() + 3) / 4 * 4);
   const std::size_t total = kHeaderBytes + kChunkHeaderBytes + text.size() +

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/report.h"
 
 namespace prt::gltf {
 
@@ -70,7 +71,7 @@ std::span<const std::byte> Model::view_bytes(int buffer_view) const {
 
 Model read_model(const State& state) {
   Model model{{}, state};
-  const std::string text = readable_part(state.root).dump();
+  const std::string text = json_text(readable_part(state.root));
   if (text.size() > std::numeric_limits<unsigned>::max()) {
     throw_bad_input("too much JSON", {.file = state.file});
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "core/checked.h"
 #include "core/error.h"
 #include "core/hash.h"
@@ -59,6 +61,19 @@ TEST(Report, HoldsInputsStagesAndPeakMemory) {
   EXPECT_EQ(json["stages"][0]["name"], "work");
   EXPECT_GT(json["peak_memory_bytes"], 0);
   std::filesystem::remove(path);
+}
+
+TEST(Report, ReplacesBytesThatAreNotUtf8) {
+  const std::filesystem::path input = testing::TempDir() + "prtkit-\xe4.txt";
+  const std::filesystem::path path = testing::TempDir() + "prtkit-report.json";
+  std::ofstream(input) << "text";
+  Report report("test");
+  report.add_input(input);
+  report.write(path, false);
+  const auto json = nlohmann::json::parse(read_text_file(path));
+  EXPECT_EQ(json["inputs"][0]["path"], testing::TempDir() + "prtkit-\ufffd.txt");
+  std::filesystem::remove(path);
+  std::filesystem::remove(input);
 }
 
 }  // namespace

@@ -188,6 +188,16 @@ TEST_F(GltfImport, RejectsWhatHasNoTriangleLeft) {
   EXPECT_THROW(import_file(folder_.write("a.obj", "v 0 0 0\nf 1 1 1\n"), {}), Error);
 }
 
+TEST_F(GltfImport, WritesNamesThatAreNotUtf8) {
+  folder_.write("a.mtl", "newmtl gr\xfcn\nKd 0 1 0\n");
+  const auto path =
+      folder_.write("a.obj", "mtllib a.mtl\nusemtl gr\xfcn\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  import_file(path, {}).document.save_glb(folder_ / "a.glb");
+  const mesh::Scene scene = Document::load(folder_ / "a.glb").scene();
+  EXPECT_EQ(scene.primitives[0].name, "gr\ufffdn");
+  EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[0], 0), Vec3(0, 1, 0));
+}
+
 // glTF wants texture coordinates wherever a texture is.
 TEST_F(GltfImport, DropsTheTextureWhereTextureCoordinatesAreMissing) {
   image::write_image(folder_ / "a.png", image::Image(2, 2, 3));
