@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
     if (options.hemisphere) json["hemisphere"] = inspect::hemisphere_table();
     if (!options.file.empty()) valid = inspect_one(options, no_clobber, report, json);
     if (!options.compare.empty()) compare_images(options, no_clobber, report, json);
-    fmt::print("{}\n", options.json ? json.dump(2) : inspect::to_text(json));
+    fmt::print("{}\n", options.json ? json_text(json, 2) : inspect::to_text(json));
     report.json()["result"] = json;
     if (!valid) {
       throw_bad_input("the file is not valid",
