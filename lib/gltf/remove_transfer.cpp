@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gltf/state.h"
+#include "gltf/transfer_format.h"
 
 namespace prt::gltf {
 
@@ -99,7 +100,7 @@ void erase_extension(Json& object) {
 void erase_attributes(Json& primitive, Numbers& dead) {
   Json kept = Json::object();
   for (const auto& [name, accessor] : primitive["attributes"].items()) {
-    if (name.starts_with("_PRT_")) {
+    if (is_transfer_attribute(name)) {
       collect_numbers(accessor, dead);
     } else {
       kept[name] = accessor;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 #include "gltf/precomputed_transfer.h"
 
@@ -14,10 +15,15 @@ namespace prt::gltf {
 
 /// Versions of the conventions: the second has component counts and normalised weights.
 constexpr int kFirstConventions = 1, kLastConventions = 2;
-constexpr const char* kClusterAttribute = "_PRT_CLUSTER";
+constexpr const char *kClusterAttribute = "_PRT_CLUSTER", *kWeightsPrefix = "_PRT_WEIGHTS_";
 
 inline std::string weights_attribute(std::size_t group) {
-  return "_PRT_WEIGHTS_" + std::to_string(group);
+  return kWeightsPrefix + std::to_string(group);
+}
+
+/// The other attributes under _PRT_… are of other extensions.
+inline bool is_transfer_attribute(std::string_view name) {
+  return name == kClusterAttribute || name.starts_with(kWeightsPrefix);
 }
 
 inline std::size_t weight_group_count(int component_count) {
