@@ -20,16 +20,14 @@ void collect_numbers(const Json& json, Numbers& numbers) {
   for (const Json& child : json) collect_numbers(child, numbers);
 }
 
-// What may refer to accessors and views, and what we do not know and so might.
-Numbers references(const Json& root) {
-  Numbers numbers;
-  for (const char* name : {"meshes", "skins", "animations", "extensions"}) {
-    collect_numbers(array_of(root, name), numbers);
+// What refers to accessors and views, and what we do not know and so might, wherever it is.
+void collect_references(const Json& json, Numbers& numbers) {
+  if (!json.is_structured()) return;
+  for (const auto& [key, child] : json.items()) {
+    const bool may_refer = key == "meshes" || key == "skins" || key == "animations" ||
+                           key == "extensions" || key == "extras";
+    may_refer ? collect_numbers(child, numbers) : collect_references(child, numbers);
   }
-  for (const Json& node : array_of(root, "nodes")) {
-    collect_numbers(array_of(node, "extensions"), numbers);
-  }
-  return numbers;
 }
 
 // The views that accessors and images name, as often as they do.
@@ -69,7 +67,8 @@ void shorten_buffers(State& state, const std::vector<Json>& gone) {
 }
 
 void drop_last_accessors(State& state, const Numbers& dead) {
-  const Numbers referenced = references(state.root);
+  Numbers referenced;
+  collect_references(state.root, referenced);
   auto used = views_in_use(state.root);
   Json& accessors = make_array(state.root, "accessors");
   Json& views = make_array(state.root, "bufferViews");

@@ -93,6 +93,26 @@ TEST(GltfSurvival, RemovingTheTransferLeavesNothingOfIt) {
   EXPECT_FALSE(document.precomputed_transfer());
 }
 
+TEST(GltfSurvival, RemovingTheTransferLeavesAccessorsThatTheUnknownMayReferTo) {
+  const auto accessor_counts = [](const char* pointer, std::size_t number) {
+    ordered_json json = rich_json();
+    json[ordered_json::json_pointer(pointer)] = number;
+    Document document = parse(json);
+    document.set_precomputed_transfer(samples::transfer(3));
+    const std::size_t baked = json_of(document.glb_bytes())["accessors"].size();
+    document.remove_precomputed_transfer();
+    return std::pair(baked, json_of(document.glb_bytes())["accessors"].size());
+  };
+  const auto [baked, left] = accessor_counts("/materials/0/alphaCutoff", 0);
+  ASSERT_LT(left, baked);
+  for (const char* place : {"/materials/0/extras/a", "/materials/0/extensions/FOO_bar/a",
+                            "/scenes/0/extensions/FOO_bar/a", "/cameras/0/extras/a",
+                            "/accessors/0/extensions/FOO_bar/a", "/asset/extras/a/b"}) {
+    EXPECT_EQ(accessor_counts(place, baked - 1).second, baked) << place;
+  }
+  EXPECT_EQ(accessor_counts("/materials/0/alphaCutoff", baked - 1).second, left);
+}
+
 TEST(GltfSurvival, EverythingUnknownSurvivesImport) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.gltf", rich_json().dump());
