@@ -1,6 +1,7 @@
 #include "gltf/import.h"
 
 #include "core/error.h"
+#include "core/file.h"
 #include "gltf/repair_geometry.h"
 #include "mesh/mesh_file.h"
 
@@ -52,7 +53,7 @@ ImportResult import_gltf(const std::filesystem::path& path, const ImportOptions&
 
 ImportResult import_file(const std::filesystem::path& path, const ImportOptions& options) {
   if (mesh::is_mesh_file(path)) return import_mesh_file(path, options);
-  const std::string ending = path.extension().string();
+  const std::string ending = lower_extension(path);
   if (ending == ".gltf" || ending == ".glb") return import_gltf(path, options);
   throw_bad_input("unknown kind of file", {.file = path.string(),
                                            .found = "\"" + ending + "\"",

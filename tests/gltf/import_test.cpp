@@ -188,6 +188,14 @@ TEST_F(GltfImport, RejectsWhatHasNoTriangleLeft) {
   EXPECT_THROW(import_file(folder_.write("a.obj", "v 0 0 0\nf 1 1 1\n"), {}), Error);
 }
 
+TEST_F(GltfImport, KnowsEndingsInCapitals) {
+  const auto text = samples::triangle_json().dump();
+  EXPECT_EQ(import_file(folder_.write("A.GLTF", text), {}).meshes.size(), 1u);
+  const auto obj = folder_.write("A.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  import_file(obj, {}).document.save_glb(folder_ / "A.GLB");
+  EXPECT_EQ(import_file(folder_ / "A.GLB", {}).meshes.size(), 1u);
+}
+
 TEST_F(GltfImport, WritesNamesThatAreNotUtf8) {
   folder_.write("a.mtl", "newmtl gr\xfcn\nKd 0 1 0\n");
   const auto path =
