@@ -28,8 +28,7 @@ constexpr const char* kArrays[] = {"accessors", "animations", "buffers", "buffer
                                    "scenes",    "skins",      "textures"};
 
 constexpr const char* kSupportedRequired[] = {"KHR_mesh_quantization", "KHR_texture_transform",
-                                              "KHR_lights_punctual",   "EXT_texture_webp",
-                                              "KHR_texture_basisu",    "KHR_animation_pointer"};
+                                              "KHR_lights_punctual", "KHR_animation_pointer"};
 
 [[noreturn]] void reject(const Where& where, const std::string& what, const std::string& found = {},
                          const std::string& expected = {}, const std::string& advice = {}) {
@@ -67,9 +66,10 @@ void check_required_extensions(const State& state) {
   }
   for (const Json& json : array_of(state.root, "extensionsRequired")) {
     const auto name = json.get<std::string>();
-    const bool known = name.starts_with("KHR_materials_") ||
-                       std::find(std::begin(kSupportedRequired), std::end(kSupportedRequired),
-                                 name) != std::end(kSupportedRequired);
+    const bool known =
+        (name.starts_with("KHR_materials_") && name != "KHR_materials_pbrSpecularGlossiness") ||
+        std::find(std::begin(kSupportedRequired), std::end(kSupportedRequired), name) !=
+            std::end(kSupportedRequired);
     if (!known) {
       reject({state.file, "extensionsRequired"}, "unsupported extension", name, {},
              "Export the file without it, or uncompressed.");

@@ -26,12 +26,12 @@ mesh::Wrap read_wrap(int code) {
   }
 }
 
-// Factors of the extensions that shape reflection; a file can hold anything in their place.
+// Factors of an extension; a file can hold anything in their place.
 class Factors {
  public:
-  Factors(const tinygltf::Material& material, const char* extension) {
-    const auto found = material.extensions.find(extension);
-    if (found != material.extensions.end() && found->second.IsObject()) object_ = &found->second;
+  Factors(const tinygltf::ExtensionMap& extensions, const char* name) {
+    const auto found = extensions.find(name);
+    if (found != extensions.end() && found->second.IsObject()) object_ = &found->second;
   }
 
   explicit operator bool() const { return object_ != nullptr; }
@@ -41,14 +41,16 @@ class Factors {
     return has(name) ? limit(object_->Get(name), fallback, low, high) : fallback;
   }
 
-  Vec3 colour(const char* name) const {
-    Vec3 colour(1.0f);
-    if (!has(name)) return colour;
+  template <class Vec>
+  Vec vector(const char* name, float fallback, float low, float high) const {
+    constexpr unsigned kCount = Vec::dimensions();
+    Vec vector(fallback);
+    if (!has(name)) return vector;
     const tinygltf::Value& list = object_->Get(name);
-    for (std::size_t c = 0; c < 3 && list.IsArray() && list.ArrayLen() == 3; ++c) {
-      colour[static_cast<int>(c)] = limit(list.Get(c), 1.0f, 0.0f, 1e6f);
+    for (unsigned c = 0; c < kCount && list.IsArray() && list.ArrayLen() == kCount; ++c) {
+      vector[static_cast<int>(c)] = limit(list.Get(c), fallback, low, high);
     }
-    return colour;
+    return vector;
   }
 
  private:
@@ -65,18 +67,28 @@ void read_reflection(const tinygltf::Material& from, mesh::Material& material) {
       std::clamp(static_cast<float>(from.pbrMetallicRoughness.metallicFactor), 0.0f, 1.0f);
   material.roughness =
       std::clamp(static_cast<float>(from.pbrMetallicRoughness.roughnessFactor), 0.0f, 1.0f);
-  material.ior = Factors(from, "KHR_materials_ior").number("ior", 1.5f, 0.0f, 1e6f);
+  material.ior = Factors(from.extensions, "KHR_materials_ior").number("ior", 1.5f, 0.0f, 1e6f);
   if (material.ior > 0.0f) material.ior = std::max(material.ior, 1.0f);
-  const Factors specular(from, "KHR_materials_specular");
+  const Factors specular(from.extensions, "KHR_materials_specular");
   material.specular = specular.number("specularFactor", 1.0f, 0.0f, 1.0f);
-  material.specular_color = specular.colour("specularColorFactor");
-  const Factors anisotropy(from, "KHR_materials_anisotropy");
+  material.specular_color = specular.vector<Vec3>("specularColorFactor", 1.0f, 0.0f, 1e6f);
+  const Factors anisotropy(from.extensions, "KHR_materials_anisotropy");
   material.has_anisotropy = static_cast<bool>(anisotropy);
   material.anisotropy_strength = anisotropy.number("anisotropyStrength", 0.0f, 0.0f, 1.0f);
   material.anisotropy_rotation = anisotropy.number("anisotropyRotation", 0.0f, -1e3f, 1e3f);
   material.has_unread_textures = specular.has("specularTexture") ||
                                  specular.has("specularColorTexture") ||
                                  anisotropy.has("anisotropyTexture");
+}
+
+// KHR_texture_transform: translation · rotation · scale. The rotation is counter-clockwise as seen
+// in the image, whose t grows downwards.
+mesh::TextureTransform read_transform(const Factors& from) {
+  const auto offset = from.vector<Vec2>("offset", 0.0f, -1e6f, 1e6f);
+  const auto scale = from.vector<Vec2>("scale", 1.0f, -1e6f, 1e6f);
+  const float angle = from.number("rotation", 0.0f, -1e3f, 1e3f);
+  const float c = std::cos(angle), s = std::sin(angle);
+  return {{c * scale.x, s * scale.y, offset.x}, {-s * scale.x, c * scale.y, offset.y}};
 }
 
 class MaterialReader {
@@ -102,10 +114,11 @@ class MaterialReader {
     std::copy(pbr.baseColorFactor.begin(), pbr.baseColorFactor.end(), &material.base_color.x);
     const Where where = model_.where("material", index);
     read_texture(pbr.baseColorTexture, image::Content::colour, "base colour", where,
-                 {material.base_color_image, material.wrap_s, material.wrap_t});
+                 {material.base_color_image, material.wrap_s, material.wrap_t,
+                  material.base_color_transform});
     read_texture(pbr.metallicRoughnessTexture, image::Content::data, "metallic-roughness", where,
                  {material.metallic_roughness_image, material.metallic_roughness_wrap_s,
-                  material.metallic_roughness_wrap_t});
+                  material.metallic_roughness_wrap_t, material.metallic_roughness_transform});
     return material;
   }
 
@@ -113,19 +126,18 @@ class MaterialReader {
   struct Texture {
     int& image;
     mesh::Wrap &wrap_s, &wrap_t;
+    mesh::TextureTransform& transform;
   };
 
   void read_texture(const tinygltf::TextureInfo& info, image::Content content, const char* name,
                     const Where& where, const Texture& to) {
     if (info.index < 0) return;
     const auto& texture = model_.textures[static_cast<std::size_t>(info.index)];
-    if (info.texCoord != 0) {
+    const Factors transform(info.extensions, "KHR_texture_transform");
+    if (transform.number("texCoord", static_cast<float>(info.texCoord), 0.0f, 1e6f) != 0.0f) {
       log::warning("{}: {}: {} texture on another set than TEXCOORD_0, ignored", where.file,
                    where.element, name);
       return;
-    }
-    if (info.extensions.contains("KHR_texture_transform")) {
-      log::warning("{}: {}: KHR_texture_transform ignored", where.file, where.element);
     }
     if (texture.source < 0) {
       log::warning("{}: {}: {} texture in a format of an extension, ignored", where.file,
@@ -133,6 +145,7 @@ class MaterialReader {
       return;
     }
     to.image = image_number(static_cast<std::size_t>(texture.source), content);
+    to.transform = read_transform(transform);
     if (texture.sampler >= 0) {
       const auto& sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
       to.wrap_s = read_wrap(sampler.wrapS);

@@ -48,6 +48,11 @@ Vec3 sample_bilinear(const image::Image& image, const Vec2& texcoord, Wrap wrap_
   return upper * (1 - fy) + lower * fy;
 }
 
+Vec2 transformed(const Vec2& texcoord, const TextureTransform& transform) {
+  const Vec3 point(texcoord.x, texcoord.y, 1.0f);
+  return {transform.u.dot(point), transform.v.dot(point)};
+}
+
 template <class T>
 T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& corners, float u,
               float v, const T& absent) {
@@ -63,9 +68,10 @@ MetallicRoughness metallic_roughness_at(const Scene& scene, const Primitive& pri
                                  : scene.materials[static_cast<std::size_t>(primitive.material)];
   MetallicRoughness result{material.metallic, material.roughness};
   if (material.metallic_roughness_image >= 0) {
-    const Vec3 texel = sample_bilinear(
-        scene.images[static_cast<std::size_t>(material.metallic_roughness_image)], texcoord,
-        material.metallic_roughness_wrap_s, material.metallic_roughness_wrap_t);
+    const Vec3 texel =
+        sample_bilinear(scene.images[static_cast<std::size_t>(material.metallic_roughness_image)],
+                        transformed(texcoord, material.metallic_roughness_transform),
+                        material.metallic_roughness_wrap_s, material.metallic_roughness_wrap_t);
     result.metallic *= std::clamp(texel.z, 0.0f, 1.0f);
     result.roughness *= std::clamp(texel.y, 0.0f, 1.0f);
   }
@@ -112,7 +118,8 @@ Vec3 albedo_at(const Scene& scene, const Primitive& primitive, const Vec2& texco
     albedo *= Vec3(material.base_color.x, material.base_color.y, material.base_color.z);
     if (material.base_color_image >= 0) {
       albedo *= sample_bilinear(scene.images[static_cast<std::size_t>(material.base_color_image)],
-                                texcoord, material.wrap_s, material.wrap_t);
+                                transformed(texcoord, material.base_color_transform),
+                                material.wrap_s, material.wrap_t);
     }
   }
   for (int c = 0; c < 3; ++c) albedo[c] = std::clamp(albedo[c], 0.0f, 1.0f);
@@ -206,6 +213,9 @@ std::string scene_hash(const Scene& scene) {
                            static_cast<int>(material.metallic_roughness_wrap_s),
                            static_cast<int>(material.metallic_roughness_wrap_t)};
     hasher.add(texture, sizeof texture);
+    hasher.add(&material.base_color_transform, sizeof material.base_color_transform);
+    hasher.add(&material.metallic_roughness_transform,
+               sizeof material.metallic_roughness_transform);
   }
   for (const image::Image& image : scene.images) {
     const int size[] = {image.width, image.height, image.channel_count};

@@ -16,6 +16,11 @@ namespace prt::mesh {
 
 enum class Wrap { repeat, clamp, mirror };
 
+/// Where a texture is looked up: at (u · (s, t, 1), v · (s, t, 1)) for texture coordinates (s, t).
+struct TextureTransform {
+  Vec3 u{1.0f, 0.0f, 0.0f}, v{0.0f, 1.0f, 0.0f};
+};
+
 /// What a surface reflects, in glTF's terms. Diffuse transfer looks at the base colour only; the
 /// rest is for glossy transfer.
 struct Material {
@@ -23,10 +28,12 @@ struct Material {
   Vec4 base_color{1.0f, 1.0f, 1.0f, 1.0f};  ///< linear factor
   int base_color_image = -1;                ///< index into Scene::images, -1: none
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
+  TextureTransform base_color_transform{};
   bool double_sided = false;
   float metallic = 0.0f, roughness = 1.0f;  ///< factors in [0, 1]
   int metallic_roughness_image = -1;        ///< index into Scene::images, -1: none
   Wrap metallic_roughness_wrap_s = Wrap::repeat, metallic_roughness_wrap_t = Wrap::repeat;
+  TextureTransform metallic_roughness_transform{};
   float ior = 1.5f;                       ///< >= 1, or 0 for infinity
   float specular = 1.0f;                  ///< in [0, 1]
   Vec3 specular_color{1.0f, 1.0f, 1.0f};  ///< >= 0

@@ -303,6 +303,14 @@ TEST(GltfRead, RejectsCompressedGeometry) {
   EXPECT_ERROR(json, "compressed data is not supported");
 }
 
+TEST(GltfRead, RejectsRequiredExtensionsThatWouldChangeTheAlbedo) {
+  for (const char* name :
+       {"EXT_texture_webp", "KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness"}) {
+    EXPECT_ERROR(with("/extensionsRequired", {name}), name);
+  }
+  EXPECT_ERROR(with("/extensionsRequired", {"KHR_texture_transform"}), "not of unit length");
+}
+
 TEST(GltfRead, RejectsPositionsThatAreNotFinite) {
   ordered_json json = samples::triangle_json();
   std::string uri = json["buffers"][0]["uri"];

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "gltf/document.h"
@@ -100,6 +101,32 @@ TEST(GltfMaterial, ReadsTheTextureOfMetallicAndRoughness) {
   const auto at = mesh::metallic_roughness_at_vertex(scene, primitive, 0);
   EXPECT_EQ(at.metallic, 0.5f);
   EXPECT_EQ(at.roughness, 0.0f);
+}
+
+// A texture of red, green above blue, white turns clockwise, as the extension has it.
+TEST(GltfMaterial, MovesTexturesByTheirTransform) {
+  const mesh::Scene scene = read_scene(ordered_json::parse(R"({"pbrMetallicRoughness": {
+    "baseColorTexture": {"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform":
+      {"offset": [0, 1], "rotation": 1.5707963, "texCoord": 0}}},
+    "metallicRoughnessTexture": {"index": 0, "extensions": {"KHR_texture_transform":
+      {"offset": [0.25, -1], "scale": [2, 3], "rotation": 0.5}}}}})"));
+  mesh::Primitive primitive;
+  primitive.material = 1;
+  const auto albedo = [&](float s, float t) {
+    return mesh::albedo_at(scene, primitive, Vec2(s, t), Vec4(1));
+  };
+  EXPECT_LT((albedo(0.25f, 0.25f) - Vec3(0, 0, 1)).length(), 1e-5f);
+  EXPECT_LT((albedo(0.75f, 0.25f) - Vec3(1, 0, 0)).length(), 1e-5f);
+  EXPECT_LT((albedo(0.25f, 0.75f) - Vec3(1, 1, 1)).length(), 1e-5f);
+  EXPECT_LT((albedo(0.75f, 0.75f) - Vec3(0, 1, 0)).length(), 1e-5f);
+  const mesh::TextureTransform& second = scene.materials[1].metallic_roughness_transform;
+  const float c = std::cos(0.5f), s = std::sin(0.5f);
+  EXPECT_LT((second.u - Vec3(2 * c, 3 * s, 0.25f)).length(), 1e-6f);
+  EXPECT_LT((second.v - Vec3(-2 * s, 3 * c, -1)).length(), 1e-6f);
+  EXPECT_EQ(read_material(ordered_json::parse(R"({"pbrMetallicRoughness": {"baseColorTexture":
+    {"index": 0, "extensions": {"KHR_texture_transform": {"texCoord": 1}}}}})"))
+                .base_color_image,
+            -1);
 }
 
 TEST(GltfMaterial, SaysThatTexturesOfFactorsAreNotRead) {

@@ -48,6 +48,14 @@ TEST(Albedo, TexturesWrapAsTheirMaterialSays) {
   EXPECT_FLOAT_EQ(albedo_where(-1.25f, Wrap::mirror), 1.0f);
 }
 
+TEST(Albedo, TexturesAreLookedUpThroughTheirTransform) {
+  Scene scene = textured({{0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.5f}}, Wrap::clamp);
+  scene.materials[0].base_color_transform.u = {-1, 0, 1};
+  EXPECT_EQ(albedo_at_vertex(scene, scene.primitives[0], 0), Vec3(1));
+  EXPECT_EQ(albedo_at_vertex(scene, scene.primitives[0], 1), Vec3(0));
+  EXPECT_EQ(albedo_at_vertex(scene, scene.primitives[0], 2), Vec3(0.5f));
+}
+
 TEST(MeshHash, ChangesWithGeometryAndReflectionAndNothingElse) {
   const Scene scene = textured({{0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.5f}}, Wrap::repeat);
   const std::string hash = mesh_hash(scene);
@@ -97,6 +105,10 @@ TEST(SceneHash, ChangesWithTheTextureBetweenTheVerticesToo) {
   const Scene scene = textured(std::vector<Vec2>(3, Vec2(0.25f, 0.5f)), Wrap::repeat);
   Scene other = scene;
   other.images[0].at(1, 0)[0] = 0.5f;
+  EXPECT_EQ(mesh_hash(other), mesh_hash(scene));
+  EXPECT_NE(scene_hash(other), scene_hash(scene));
+  other = scene;
+  other.materials[0].base_color_transform.v.z = 2.0f;  // the image has one row
   EXPECT_EQ(mesh_hash(other), mesh_hash(scene));
   EXPECT_NE(scene_hash(other), scene_hash(scene));
   other = scene;
