@@ -113,6 +113,10 @@ class MaterialReader {
     read_reflection(from, material);
     std::copy(pbr.baseColorFactor.begin(), pbr.baseColorFactor.end(), &material.base_color.x);
     const Where where = model_.where("material", index);
+    if (from.alphaMode != "OPAQUE") {
+      log::warning("{}: {}: alphaMode {} ignored, opaque instead", where.file, where.element,
+                   from.alphaMode);
+    }
     read_texture(pbr.baseColorTexture, image::Content::colour, "base colour", where,
                  {material.base_color_image, material.wrap_s, material.wrap_t,
                   material.base_color_transform});

@@ -75,6 +75,16 @@ class BadGltf(ToolTest):
         source = self.write("a.glb", glb(*triangle_gltf()))
         self.done("prt-import", source, "-o", self.folder / "out.glb")
 
+    def test_transparency_is_ignored_with_a_warning(self):
+        document, binary = triangle_gltf()
+        document["materials"] = [{}, {"alphaMode": "MASK"}]
+        document["meshes"][0]["primitives"][0]["material"] = 1
+        source, transfer = self.write("a.glb", glb(document, binary)), self.folder / "a.exr"
+        self.done("prt-import", source, "-o", self.folder / "out.glb")
+        result = self.done("prt-transfer", self.folder / "out.glb", "-o", transfer)
+        self.assertRegex(result.stderr, "material 1: alphaMode MASK ignored")
+        self.assertNotIn("material 0", result.stderr)
+
     def test_accessor_past_its_buffer_view(self):
         document, binary = triangle_gltf()
         document["accessors"][0]["count"] = 4
