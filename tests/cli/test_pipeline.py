@@ -1,6 +1,7 @@
 """The whole pipeline with the real tools: documented commands and reports, the same bytes for any
 number of threads, files that other programs accept."""
 
+import base64
 import hashlib
 import math
 import subprocess
@@ -9,6 +10,9 @@ import unittest
 from toolbox import BIN, BUNNY, SOURCE, WORLD, WRONG_USAGE, ToolTest
 
 BOX = SOURCE / "data/colored_box.obj"
+EXAMPLES = SOURCE / "docs/extensions/PRTKIT_precomputed_transfer"
+PNG = ("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJg"
+       "gg==")  # a pixel
 TOOLS = ("prt-import", "prt-light", "prt-transfer", "prt-compress", "prt-render", "prt-view",
          "prt-inspect")
 
@@ -104,6 +108,44 @@ class Pipeline(ToolTest):
                 capture_output=True, text=True)
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertIn("_prt_cluster", result.stdout.lower())
+
+    def test_every_kind_of_file_passes_the_validator(self):
+        paths, files = self.box(), sorted(EXAMPLES.glob("*.gltf"))
+        self.assertGreater(len(files), 1)
+        glossy = self.folder / "glossy.exr"
+        self.done("prt-transfer", paths["glb"], "-o", glossy, "--mode", "matrix", "--bands", 3,
+                  "--rows", 16, "--rays", 64)
+        for name, transfer, *options in (
+                ("adaptive", paths["transfer.exr"], "--method", "adaptive", "--components", 4),
+                ("unorm8", paths["transfer.exr"], "--components", 4, "--weights", "unorm8"),
+                ("vq", paths["transfer.exr"], "--method", "vq"),
+                ("glossy", glossy, "--components", 4)):
+            files.append(self.folder / f"{name}.glb")
+            self.done("prt-compress", paths["glb"], transfer, "-o", files[-1], "--clusters", 8,
+                      *options)
+        files.append(self.folder / "again.glb")
+        self.done("prt-compress", files[-2], glossy, "-o", files[-1], "--clusters", 4)
+        for source in self.imperfect_sources():
+            files.append(self.folder / f"{source.stem}.glb")
+            self.done("prt-import", source, "-o", files[-1])
+        result = subprocess.run(["node", SOURCE / "tests/gltf/validate.mjs", *files],
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(result.stdout.count(": 0 errors, 0 warnings"), len(files))
+
+    def imperfect_sources(self):
+        """Models that import has to mend before the validator takes them."""
+        self.write("a.png", base64.b64decode(PNG))
+        self.write("a.mtl", "newmtl gr\xfcn\nmap_Kd a.png\n".encode("latin-1"))
+        obj = "mtllib a.mtl\nusemtl gr\xfcn\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nvt 0 1\n"
+        ply = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+               "property float z\nproperty float red\nproperty float green\nproperty float blue\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+               "0 0 0 nan 1 1\n1 0 0 2 0 0\n0 1 0 -1 0 0\n3 0 1 2\n")
+        return (self.write("no_vt.obj", (obj + "f 1 2 3\n").encode("latin-1")),
+                self.write("part_vt.obj", (obj + "f 1/1 2/1 3\n").encode("latin-1")),
+                self.write("nan_vt.obj", (obj + "f 1/1 2/2 3/3\n").encode("latin-1")),
+                self.write("colours.ply", ply))
 
     def test_inspect_finds_the_baked_file_valid(self):
         paths = self.box()

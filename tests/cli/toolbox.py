@@ -21,7 +21,8 @@ DONE, FAILED, WRONG_USAGE, BAD_INPUT = 0, 1, 2, 3
 def run(tool, *arguments, **keywords):
     """Runs build/bin/TOOL and returns the finished process with text output."""
     command = [str(BIN / tool), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=600, **keywords)
+    return subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600,
+                          **keywords)
 
 
 def limit_file_size(limit):
