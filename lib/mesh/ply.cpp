@@ -7,6 +7,7 @@
 
 #include "core/checked.h"
 #include "core/error.h"
+#include "image/srgb.h"
 #include "mesh/mesh_file.h"
 #include "mesh/ply_header.h"
 #include "mesh/text.h"
@@ -156,21 +157,21 @@ class PlyReader {
     const char* u = has({"s", "t"}) ? "s" : "u";
     const char* v = has({"s", "t"}) ? "t" : "v";
     const bool texcoords = has({u, v});
-    const auto color_scale = [&](std::size_t c) {
-      const PlyType type = element.properties[c].type;
-      return type == PlyType::u8 ? 1.0f / 255.0f : type == PlyType::u16 ? 1.0f / 65535.0f : 1.0f;
-    };
     std::vector<float> row(none);
     const auto at = [&](const char* name) { return row[column(name)]; };
+    const auto color_at = [&](const char* name) {
+      const PlyType type = element.properties[column(name)].type;
+      return type == PlyType::u8    ? image::linear_from_srgb(at(name) / 255.0f)
+             : type == PlyType::u16 ? at(name) / 65535.0f
+                                    : at(name);
+    };
     for (std::size_t i = 0; i < element.count; ++i) {
       read_row(element, i, row);
       mesh_.positions.emplace_back(at("x"), at("y"), at("z"));
       if (normals) mesh_.normals.emplace_back(at("nx"), at("ny"), at("nz"));
       if (texcoords) mesh_.texcoords.emplace_back(at(u), 1.0f - at(v));
       if (colors) {
-        mesh_.colors.emplace_back(at("red") * color_scale(column("red")),
-                                  at("green") * color_scale(column("green")),
-                                  at("blue") * color_scale(column("blue")), 1.0f);
+        mesh_.colors.emplace_back(color_at("red"), color_at("green"), color_at("blue"), 1.0f);
       }
     }
   }

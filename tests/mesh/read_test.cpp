@@ -95,6 +95,17 @@ TEST(PlyRead, ReadsTheSameFromEveryFormat) {
   }
 }
 
+TEST(PlyRead, ColoursOf8BitsAreSrgb) {
+  const TriangleMesh mesh = read_ply(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty uchar green\nproperty float blue\n"
+      "end_header\n0 0 0 128 255 0.5\n",
+      "a.ply");
+  EXPECT_NEAR(mesh.colors[0].x, 0.215861f, 1e-6f);
+  EXPECT_EQ(mesh.colors[0].y, 1.0f);
+  EXPECT_EQ(mesh.colors[0].z, 0.5f);
+}
+
 TEST(OffRead, ReadsWhatEachPrefixAnnounces) {
   const struct {
     const char *prefix, *vertex;
