@@ -37,7 +37,7 @@ Vec3 vector_at(std::span<const float> numbers, std::size_t first) {
 Vec3 direction_at(AnalyticKind kind, std::span<const float> numbers) {
   const Vec3 direction = vector_at(numbers, 0);
   if (direction == Vec3(0)) reject(kind, "no direction", numbers, "X,Y,Z other than 0,0,0");
-  return direction.normalized();
+  return Vec3(Imath::V3d(direction).normalized());  // floats would overflow, or vanish
 }
 
 }  // namespace

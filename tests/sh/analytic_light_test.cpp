@@ -19,6 +19,11 @@ TEST(AnalyticLight, NumbersMakeTheLightTheyDescribe) {
   const float directional[] = {0, 3, 0, 1, 2, 3};
   EXPECT_EQ(analytic_light(AnalyticKind::directional, 4, directional).coefficients,
             directional_light(4, {0, 1, 0}, {1, 2, 3}).coefficients);
+  const float long_one[] = {0, 1e30f, 0, 1, 2, 3}, short_one[] = {0, 1e-40f, 0, 1, 2, 3};
+  EXPECT_EQ(analytic_light(AnalyticKind::directional, 4, long_one).coefficients,
+            directional_light(4, {0, 1, 0}, {1, 2, 3}).coefficients);
+  EXPECT_EQ(analytic_light(AnalyticKind::directional, 4, short_one).coefficients,
+            directional_light(4, {0, 1, 0}, {1, 2, 3}).coefficients);
   const float constant[] = {1, 2, 3};
   EXPECT_EQ(analytic_light(AnalyticKind::constant, 4, constant).coefficients,
             constant_light(4, {1, 2, 3}).coefficients);
