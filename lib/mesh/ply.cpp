@@ -180,7 +180,7 @@ class PlyReader {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (!property.is_list) {
-        row[p] = static_cast<float>(read_number(property.type, element, i));
+        row[p] = narrowed(read_number(property.type, element, i));
         continue;
       }
       for (std::size_t n = read_list_count(property, element, i); n > 0; --n) {

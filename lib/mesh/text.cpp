@@ -1,7 +1,6 @@
 #include "mesh/text.h"
 
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 namespace prt::mesh {
@@ -52,12 +51,13 @@ std::optional<float> to_float(std::string_view word) {
     return tiny ? 0.0f : std::numeric_limits<float>::infinity();
   }
   if (error != std::errc()) return std::nullopt;
-  // Converting a double beyond the range of float is undefined; make it the infinity it means.
-  if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max()) {
-    return std::copysign(std::numeric_limits<float>::infinity(),
-                         static_cast<float>(value > 0 ? 1 : -1));
-  }
-  return static_cast<float>(value);
+  return narrowed(value);
+}
+
+float narrowed(double value) {
+  constexpr float kMax = std::numeric_limits<float>::max();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  return value > kMax ? kInfinity : value < -kMax ? -kInfinity : static_cast<float>(value);
 }
 
 std::optional<long long> to_integer(std::string_view word) {

@@ -29,6 +29,8 @@ std::string_view trimmed(std::string_view text);
 /// The whole word as a number; "nan" and "inf" are numbers here, and what they do to a mesh is for
 /// repair. Out of range becomes infinite, too small 0. nullopt for anything else.
 std::optional<float> to_float(std::string_view word);
+/// A double as float; beyond its range, where conversion is undefined, the infinity it means.
+float narrowed(double value);
 std::optional<long long> to_integer(std::string_view word);
 
 /// At most 40 characters of hostile text, for messages.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "core/error.h"
@@ -93,6 +94,19 @@ TEST(PlyRead, ReadsTheSameFromEveryFormat) {
     EXPECT_TRUE(mesh.colors[3].equalWithAbsError(Vec4(1, 0.2f, 0, 1), 1e-6f)) << format;
     EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{3, 2, 1, 3, 1, 0})) << format;
   }
+}
+
+TEST(PlyRead, DoublesBeyondFloatAreInfinite) {
+  PlyBody body("binary_little_endian");
+  body.add<double>({1e300, -1e39, 3.5e38, 3e38, 0.1, 1e-300});
+  const TriangleMesh mesh = read_ply(
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty double x\n"
+      "property double y\nproperty double z\nend_header\n" +
+          body.text(),
+      "a.ply");
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(mesh.positions[0], Vec3(infinity, -infinity, infinity));
+  EXPECT_EQ(mesh.positions[1], Vec3(3e38f, 0.1f, 0));
 }
 
 TEST(PlyRead, ColoursOf8BitsAreSrgb) {
