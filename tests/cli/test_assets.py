@@ -40,6 +40,7 @@ class Assets(ToolTest):
         self.assertEqual(self.make(), ["prt-transfer", "prt-compress", "prt-render"])
         (self.folder / "out/sheet.glb").touch()
         self.assertEqual(self.make(), ["prt-transfer", "prt-compress", "prt-render"])
+        self.write("out/sheet.transfer.exr.partial", "of an interrupted bake")
         self.make("clean")
         self.assertEqual(list((self.folder / "out").iterdir()), [])
 
