@@ -56,7 +56,7 @@ Lighting make_lighting(const PictureOptions& options, int transfer_band_count);
 /// What is behind the model: as asked for, else the light that was given, else a colour.
 Background make_background(const PictureOptions& options, Show show);
 
-/// Renders without a window. Adds to the report: stages, "light_change_seconds" (CPU), "opengl",
+/// Renders without a window. Adds to the report: stages, "light_change_seconds", "opengl",
 /// "pass_count". Throws Error.
 void render(const RenderOptions& options, Report& report);
 

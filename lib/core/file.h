@@ -8,7 +8,7 @@
 
 namespace prt {
 
-/// Default of the --max-input-bytes options.
+/// What is read of a file at most, unless a reader says otherwise.
 constexpr std::size_t kMaxInputBytes = std::size_t{8} << 30;
 
 /// Throws Error (bad_input) when `path` is missing or not a regular file.
