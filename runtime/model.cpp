@@ -56,6 +56,7 @@ void add_frames(const mesh::Scene& scene, Model& model) {
 
 void check_belongs_to(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
                       const std::filesystem::path& glb) {
+  if (transfer.mesh_hash.empty()) return;  // optional in the extension
   const std::string hash = mesh::mesh_hash(scene);
   if (transfer.mesh_hash == hash) return;
   throw_bad_input("the precomputed transfer belongs to another mesh",

@@ -82,6 +82,23 @@ TEST_F(RenderJobTest, CompressedTransferOfAnotherMeshIsRefused) {
   EXPECT_EQ(kind_of_error([&] { load_model(path("other.glb")); }), ErrorKind::bad_input);
 }
 
+TEST_F(RenderJobTest, ExamplesOfTheSpecificationAreDrawn) {
+  for (const char* name : {"example.gltf", "example_adaptive.gltf"}) {
+    RenderOptions options;
+    options.picture.model = fs::path("../docs/extensions/PRTKIT_precomputed_transfer") / name;
+    options.picture.output = path("example.exr");
+    options.picture.width = options.picture.height = 40;
+    options.picture.background = Background::none;
+    Report report("test");
+    render(options, report);
+    const image::Image picture = image::read_image(path("example.exr"));
+    std::size_t covered_count = 0;
+    for (std::size_t i = 3; i < picture.pixels.size(); i += 4)
+      covered_count += picture.pixels[i] == 1.0f;
+    EXPECT_GT(covered_count, 100u) << name;
+  }
+}
+
 TEST_F(RenderJobTest, ReferenceHasTheSameBackground) {
   const mesh::Scene scene = scene_of({torus(20, 10)});
   gltf::PrecomputedTransfer transfer = random_transfer(scene.vertex_count(), 2, 1, 3, 2);
