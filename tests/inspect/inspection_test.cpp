@@ -57,6 +57,15 @@ TEST_F(InspectionTest, FindsEveryFaultOfABakedModel) {
   EXPECT_EQ(inspection.json["findings"].size(), 3u);
 }
 
+TEST_F(InspectionTest, ExamplesOfTheSpecificationAreValid) {
+  for (const char* name : {"example.gltf", "example_adaptive.gltf"}) {
+    const Inspection inspection = inspect_file(
+        std::filesystem::path("../docs/extensions/PRTKIT_precomputed_transfer") / name);
+    EXPECT_TRUE(inspection.valid()) << to_text(inspection.json);
+    EXPECT_EQ(inspection.json["precomputed_transfer"]["band_count"], 2);
+  }
+}
+
 TEST_F(InspectionTest, TruncatedModelIsAFinding) {
   const auto path = write_model();
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
