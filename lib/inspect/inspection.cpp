@@ -11,7 +11,8 @@ namespace prt::inspect {
 
 namespace {
 
-constexpr std::size_t kHeadBytes = 64 * 1024;  // holds the header of any transfer file
+// Holds the channels of any transfer file, 36 bytes each, and the attributes after them.
+constexpr std::size_t kHeadBytes = 1 << 20;
 
 std::string read_head(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) {

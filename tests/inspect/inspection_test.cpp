@@ -90,6 +90,19 @@ TEST_F(InspectionTest, TransferShowsEnergyPerBand) {
   EXPECT_DOUBLE_EQ(json["energy_per_band"][1], band_1);
 }
 
+TEST_F(InspectionTest, TransferOfThousandsOfChannelsIsTakenForOne) {
+  signal::TransferSignal glossy = signal();
+  glossy.band_count = 5;
+  glossy.row_count = 25;
+  glossy.channel_count = 3;
+  glossy.values.assign(8 * static_cast<std::size_t>(glossy.dimension()), 1.0f);
+  const auto path = folder() / "glossy.transfer.exr";
+  signal::write_transfer(path, glossy);
+  const Inspection inspection = inspect_file(path);
+  EXPECT_EQ(inspection.json["kind"], "transfer");
+  EXPECT_EQ(inspection.json["transfer"]["dimension"], 1875);
+}
+
 TEST_F(InspectionTest, LightShowsMeanAndRinging) {
   const auto path = folder() / "light.json";
   sh::write_light(path, sh::constant_light(3, Vec3(1.0f, 2.0f, 3.0f)));
