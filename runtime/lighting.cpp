@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/file.h"
 #include "core/parallel.h"
 #include "image/environment.h"
 #include "sh/basis.h"
@@ -53,7 +54,7 @@ Lighting lighting_from(sh::Light light) {
   return {std::move(light), std::move(environment), false};
 }
 
-bool is_light_file(const std::filesystem::path& path) { return path.extension() == ".json"; }
+bool is_light_file(const std::filesystem::path& path) { return lower_extension(path) == ".json"; }
 
 Lighting load_lighting(const std::filesystem::path& path, int band_count) {
   if (is_light_file(path)) return lighting_from(sh::read_light(path));

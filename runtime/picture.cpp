@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "runtime/shading.h"
@@ -41,7 +42,7 @@ image::Image developed(const image::Image& linear, const DevelopOptions& options
 
 void write_picture(const std::filesystem::path& path, const image::Image& linear,
                    const DevelopOptions& options, bool no_clobber) {
-  const bool is_float = path.extension() == ".exr";
+  const bool is_float = lower_extension(path) == ".exr";
   image::write_image(path, is_float ? linear : developed(linear, options), no_clobber);
 }
 

@@ -14,6 +14,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "image/image.h"
 #include "runtime/picture.h"
@@ -107,10 +108,10 @@ double Viewer::run() {
 
 void Viewer::open(const fs::path& path) {
   try {
-    const std::string name = path.filename().string();
-    if (path.extension() == ".glb" || path.extension() == ".gltf")
+    const std::string kind = lower_extension(path);
+    if (kind == ".glb" || kind == ".gltf")
       load_model_file(path, {});
-    else if (name.ends_with(".transfer.exr"))
+    else if (kind == ".exr" && lower_extension(path.stem()) == ".transfer")
       load_model_file(model_path_, path);
     else
       load_light_file(path);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/hash.h"
 
 namespace prt::inspect {
@@ -32,7 +33,7 @@ bool contains(std::string_view text, std::string_view part) {
 
 // Both kinds of JSON file are objects; only glTF has to have "asset".
 std::string kind_of_json(const std::filesystem::path& path, std::string_view head) {
-  return path.extension() == ".gltf" || contains(head, "\"asset\"") ? "model" : "light";
+  return lower_extension(path) == ".gltf" || contains(head, "\"asset\"") ? "model" : "light";
 }
 
 std::string kind_of(const std::filesystem::path& path) {

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "gltf/document.h"
 #include "runtime/models.h"
+#include "runtime/picture.h"
 #include "runtime/reference/reference_job.h"
 
 namespace prt::runtime {
@@ -97,6 +98,15 @@ TEST_F(RenderJobTest, ExamplesOfTheSpecificationAreDrawn) {
       covered_count += picture.pixels[i] == 1.0f;
     EXPECT_GT(covered_count, 100u) << name;
   }
+}
+
+TEST_F(RenderJobTest, EndingsInCapitalsSayTheSame) {
+  image::Image linear(1, 1, 4);
+  linear.pixels = {4.0f, 5.0f, 6.0f, 1.0f};
+  write_picture(path("LINEAR.EXR"), linear, {}, false);
+  EXPECT_EQ(image::read_image(path("LINEAR.EXR")).pixels, linear.pixels);
+  sh::write_light(path("LIGHT.JSON"), test_light(2));
+  EXPECT_FALSE(load_lighting(path("LIGHT.JSON"), 5).is_full_map);
 }
 
 TEST_F(RenderJobTest, ReferenceHasTheSameBackground) {

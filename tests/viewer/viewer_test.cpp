@@ -147,6 +147,9 @@ TEST_F(ViewerTest, DroppedTransferIsCheckedAgainstTheModel) {
   EXPECT_NE(viewer.message().find("other.transfer.exr"), std::string::npos) << viewer.message();
   viewer.open(path("good.transfer.exr"));
   EXPECT_EQ(viewer.message(), "");
+  fs::rename(path("good.transfer.exr"), path("GOOD.TRANSFER.EXR"));
+  viewer.open(path("GOOD.TRANSFER.EXR"));
+  EXPECT_EQ(viewer.message(), "");
 }
 
 TEST_F(ViewerTest, BadFilesOnTheCommandLineAreErrors) {
