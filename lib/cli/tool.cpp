@@ -33,10 +33,10 @@ void apply(const CommonOptions& options) {
                                    : log::Level::info);
 }
 
-/// CLI11's ranges let NaN pass.
+/// CLI11's ranges let NaN pass, and most options are floats, which 1e40 would make infinite.
 void check_finite(const CLI::Option& option) {
   for (const std::string& value : option.results()) {
-    if (std::isfinite(std::stod(value))) continue;
+    if (std::isfinite(std::strtof(value.c_str(), nullptr))) continue;
     throw Error(ErrorKind::usage, option.get_name() + ": not a finite number", {.found = value});
   }
 }

@@ -81,7 +81,7 @@ class Options(ToolTest):
                      self.folder / "a.png", "--transfer", self.quad)
 
     def test_numbers_that_are_not_finite(self):
-        for value in ("nan", "inf", "-nan"):
+        for value in ("nan", "inf", "-nan", "1e40", "1e400"):
             self.wrong("--max-edge", "prt-import", self.source, "-o", self.folder / "a.glb",
                        "--max-edge", value)
         self.wrong("--base-color", "prt-import", self.source, "-o", self.folder / "a.glb",
