@@ -43,7 +43,8 @@ class ToolTest(unittest.TestCase):
         made = type(self)
         if "files" not in vars(made):
             make()
-            made.files = {path.name: content for path, content in self.listing().items()}
+            made.files = {path.name: content for path, content in self.listing().items()
+                          if content is not None}
         for name, content in made.files.items():
             self.write(name, content)
 
@@ -64,8 +65,8 @@ class ToolTest(unittest.TestCase):
         return result
 
     def listing(self):
-        """Every file of the scratch folder with its bytes."""
-        return {p: p.read_bytes() for p in sorted(self.folder.rglob("*")) if p.is_file()}
+        """Everything in the scratch folder: files with their bytes, folders with None."""
+        return {p: p.read_bytes() if p.is_file() else None for p in sorted(self.folder.rglob("*"))}
 
     def write(self, name, content):
         path = self.folder / name
