@@ -130,20 +130,21 @@ int main(int argc, char** argv) {
                  "prt-inspect bunny.prt.glb --transfer bunny.transfer.exr --plots .\n"
                  "  prt-inspect --compare bunny.exr reference.exr --heatmap difference.png");
   add_options(tool.options(), options);
-  return tool.run(argc, argv, [&](Report& report) {
+  bool valid = true;
+  const int status = tool.run(argc, argv, [&](Report& report) {
     check_usage(options);
     check_files(options, tool.common());
     const bool no_clobber = tool.common().no_clobber;
     inspect::Json json = inspect::Json::object();
-    bool valid = true;
     if (options.hemisphere) json["hemisphere"] = inspect::hemisphere_table();
     if (!options.file.empty()) valid = inspect_one(options, no_clobber, report, json);
     if (!options.compare.empty()) compare_images(options, no_clobber, report, json);
     fmt::print("{}\n", options.json ? json_text(json, 2) : inspect::to_text(json));
     report.json()["result"] = json;
-    if (!valid) {
-      throw_bad_input("the file is not valid",
-                      {.file = options.file.string(), .advice = "The findings say what is wrong."});
-    }
   });
+  if (status != 0 || valid) return status;
+  // A finding is a result, which the report has: said when that is written.
+  fmt::print(stderr, "prt-inspect: {}: the file is not valid. The findings say what is wrong.\n",
+             options.file.string());
+  return static_cast<int>(ErrorKind::bad_input);
 }

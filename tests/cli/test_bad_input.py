@@ -186,6 +186,12 @@ class BadBake(ToolTest):
         document["meshes"][0]["primitives"][0]["material"] = 0
         painted = self.write("painted.prt.glb", glb(document, binary))
         self.refused(BAD_INPUT, "colours", "prt-render", painted, "-o", self.folder / "a.png")
+        report = self.folder / "report.json"
+        result = run("prt-inspect", painted, "--json", "--report", report)
+        self.assertEqual(result.returncode, BAD_INPUT)
+        self.assertRegex(result.stderr, "painted.*not valid")
+        self.assertEqual(self.load(report)["result"], json.loads(result.stdout))
+        self.assertRegex(str(self.load(report)["result"]["findings"]), "colours")
 
     def test_cluster_counts(self):
         self.refused(WRONG_USAGE, "clusters", *self.compress("--clusters", 0))
