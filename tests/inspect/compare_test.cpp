@@ -74,5 +74,14 @@ TEST(Compare, HeatmapRunsFromBlueToRed) {
   EXPECT_EQ(map.at(2, 0)[0], map.at(2, 0)[2]);
 }
 
+TEST(Compare, EqualImagesAreBlueWhateverTheScale) {
+  const ComparisonInput input{filled(2, 1, Vec4(1.0f)), filled(2, 1, Vec4(1.0f)), {}, {}};
+  const image::Image map = heatmap(compare(input), 0.0);
+  for (int x = 0; x < 2; ++x) {
+    EXPECT_EQ(map.at(x, 0)[0], 0.0f);
+    EXPECT_EQ(map.at(x, 0)[2], 1.0f);
+  }
+}
+
 }  // namespace
 }  // namespace prt::inspect
