@@ -23,8 +23,10 @@ const std::map<std::string, std::pair<Draw, Show>> kModes = {
     {"error", {Draw::single, Show::error}}};
 
 void add_options(prt::cli::Options& app, ViewerOptions& options) {
-  app.add_option("model", options.model, "A model of prt-compress (.glb); none: drop one");
-  app.add_option("--transfer", options.transfer, "Its uncompressed transfer, to compare");
+  const prt::cli::Option* const model =
+      app.add_option("model", options.model, "A model of prt-compress (.glb); none: drop one");
+  app.add_option("--transfer", options.transfer, "Its uncompressed transfer, to compare")
+      ->needs(model);
   app.add_option("--light", options.light,
                  "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
   app.add_option("--bands", options.band_count, "Bands that a map is projected to; 0: the model's")
@@ -40,9 +42,11 @@ void add_options(prt::cli::Options& app, ViewerOptions& options) {
   app.add_flag("--animate", options.animate, "Turn the light as time goes by");
   prt::add_near_lights(app, options.near_lights, options.grid_size);
   app.start_group("Screenshot");
-  app.add_option("--screenshot", options.screenshot, "Write the window to a .png and end");
+  const prt::cli::Option* const screenshot =
+      app.add_option("--screenshot", options.screenshot, "Write the window to a .png and end");
   app.add_option("--frames", options.screenshot_frame_count, "Frames drawn before the screenshot")
-      ->check(prt::cli::Range(1, 100000));
+      ->check(prt::cli::Range(1, 100000))
+      ->needs(screenshot);
 }
 
 }  // namespace

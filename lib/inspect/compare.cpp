@@ -123,8 +123,7 @@ image::Image heatmap(const Comparison& comparison, double scale) {
     for (int x = 0; x < difference.width; ++x) {
       const float d = *difference.at(x, y);
       const double heat = d > 0.0f ? d / scale : 0.0;  // not 0 / 0 of equal images
-      canvas.fill(x, y, 1, 1,
-                  d < 0.0f ? Vec3(0.25f) : image::heat_color(static_cast<float>(heat)));
+      canvas.fill(x, y, 1, 1, d < 0.0f ? Vec3(0.25f) : image::heat_color(static_cast<float>(heat)));
     }
   }
   const int bar_width = canvas.width() - 2 * kMargin;

@@ -28,6 +28,10 @@ class Options(ToolTest):
             self.wrong(f"{option[0]}.*excludes|excludes.*{option[0]}", *render, *option,
                        "--reference")
 
+    def test_options_of_the_viewer_need_what_they_are_for(self):
+        self.wrong("--transfer requires model", "prt-view", "--transfer", self.quad)
+        self.wrong("--frames requires --screenshot", "prt-view", self.quad, "--frames", 3)
+
     def test_the_noise_of_the_reference_is_what_inspect_takes(self):
         picture, noise = self.folder / "a.exr", self.folder / "noise.exr"
         self.done("prt-render", self.quad, "-o", picture, "--reference", "--samples", 16, "--size",
