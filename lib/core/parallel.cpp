@@ -26,7 +26,8 @@ void set_thread_count(int count) {
 }
 
 int thread_count() {
-  return requested_count > 0 ? requested_count : tbb::this_task_arena::max_concurrency();
+  const int most = tbb::this_task_arena::max_concurrency();
+  return requested_count > 0 ? std::min(requested_count, most) : most;
 }
 
 void parallel_for(std::size_t count, std::size_t block,

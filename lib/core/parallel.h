@@ -8,9 +8,9 @@
 
 namespace prt {
 
-/// Number of threads used by parallel_for from now on; 0 means all processors of this process.
+/// Threads that parallel_for uses from now on, at most all processors of this process; 0: these.
 void set_thread_count(int count);
-int thread_count();
+int thread_count();  ///< that it really uses
 
 /// Calls body(begin, end) for the blocks [0, block), [block, 2 block), … of [0, count), on several
 /// threads, in no particular order. An exception thrown by body leaves through here.
