@@ -160,6 +160,9 @@ PrecomputedTransfer read_header(const Model& model, const tinygltf::Value& heade
       read_limited(header, "conventions", kFirstConventions, kLastConventions, where);
   transfer.band_count = read_limited(header, "bandCount", 1, kMaxBandCount, where);
   transfer.row_count = read_limited(header, "rowCount", 1, kMaxRowCount, where);
+  if (!is_row_count(transfer.row_count)) {
+    reject(where, "rowCount", std::to_string(transfer.row_count), "1, or n² or n² - 1");
+  }
   transfer.channel_count = read_limited(header, "channelCount", 1, 3, where);
   if (transfer.channel_count == 2) reject(where, "channelCount", "2", "1 or 3");
   transfer.brdf = read_string(header, "brdf", where);

@@ -114,7 +114,6 @@ void check_limits(const PrecomputedTransfer& transfer) {
     const char* what;
     int found, least, most;
   } limits[] = {{"bands", transfer.band_count, 1, kMaxBandCount},
-                {"rows", transfer.row_count, 1, kMaxRowCount},
                 {"clusters", encoding.cluster_count, 1, kMaxClusterCount},
                 {"components", encoding.component_count, 0, kMaxComponentCount}};
   for (const auto& [what, found, least, most] : limits) {
@@ -123,6 +122,11 @@ void check_limits(const PrecomputedTransfer& transfer) {
                  {.found = std::to_string(found),
                   .expected = fmt::format("{} to {}", least, most),
                   .advice = fmt::format("Use fewer {}.", what)});
+  }
+  if (!is_row_count(transfer.row_count)) {
+    throw_failed("number of rows that the extension does not have",
+                 {.found = std::to_string(transfer.row_count),
+                  .expected = fmt::format("1, or n² or n² - 1 up to {}", kMaxRowCount)});
   }
   if (transfer.channel_count != 1 && transfer.channel_count != 3) {
     throw_failed("number of channels that the extension does not have",

@@ -6,7 +6,9 @@
 
 #include "core/file.h"
 #include "gltf/document.h"
+#include "mesh/frame.h"
 #include "sh/basis.h"
+#include "sh/hemisphere.h"
 
 namespace prt::gltf {
 namespace {
@@ -69,6 +71,37 @@ TEST(Specification, AdaptiveExampleWithNormalizedWeightsDoesToo) {
   EXPECT_EQ(transfer->weight_format, cpca::WeightFormat::unorm8);
   EXPECT_EQ(transfer->encoding.component_counts, std::vector<std::uint32_t>({2, 0, 3}));
   EXPECT_EQ(transfer->first_clusters, std::vector<std::uint32_t>({0, 2}));
+}
+
+TEST(Specification, GlossyExampleGivesTheRadianceTowardsTheEye) {
+  const nlohmann::json vectors = test_vectors().at("glossy");
+  const Document document = Document::load(kFolder / vectors.at("file").get<std::string>());
+  const auto transfer = document.precomputed_transfer();
+  ASSERT_TRUE(transfer);
+  const mesh::TriangleMesh mesh = document.scene().primitives.at(0).mesh;
+  const auto functions = sh::hemisphere_functions(transfer->row_count);
+  ASSERT_EQ(functions, std::vector<int>({0, 1, 3}));
+  ASSERT_GE(vectors.at("cases").size(), 3u);
+  std::vector<float> row(static_cast<std::size_t>(transfer->encoding.dimension)), basis(4);
+  for (const auto& entry : vectors.at("cases")) {
+    const auto light = entry.at("light").get<std::vector<std::vector<float>>>();
+    const auto eye = entry.at("toEye").get<std::vector<float>>();
+    const Vec3 to_eye(eye[0], eye[1], eye[2]);
+    for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+      cpca::reconstruct(transfer->encoding, vertex, row);
+      const mesh::Frame frame = mesh::frame_at_vertex(mesh, vertex);
+      sh::evaluate(2, {to_eye.dot(frame.x), to_eye.dot(frame.y), to_eye.dot(frame.z)}, basis);
+      for (std::size_t c = 0; c < 3; ++c) {
+        float radiance = 0.0f;
+        for (std::size_t r = 0; r < 3; ++r)
+          for (std::size_t i = 0; i < 4; ++i)
+            radiance += row[(c * 3 + r) * 4 + i] * light[c].at(i) *
+                        basis[static_cast<std::size_t>(functions[r])];
+        EXPECT_NEAR(radiance, entry.at("radiance").at(vertex).at(c).get<float>(), 1e-5f)
+            << vertex << " " << c;
+      }
+    }
+  }
 }
 
 }  // namespace

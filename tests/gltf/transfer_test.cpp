@@ -212,6 +212,11 @@ TEST_F(GltfAdaptiveTransfer, RejectsPaddingBeyondTheLimits) {
   EXPECT_PART("bases: found 671088640 numbers");
 }
 
+TEST_F(GltfAdaptiveTransfer, RejectsRowsThatAreNoSetOfFunctions) {
+  header()["rowCount"] = 2;
+  EXPECT_PART("rowCount: found 2, expected 1, or n² or n² - 1");
+}
+
 TEST_F(GltfTransfer, RemovingKeepsAccessorsThatOthersUse) {
   const std::size_t last = json_["accessors"].size() - 1;
   json_["extensions"]["FOO_bar"] = {{"accessor", last}};

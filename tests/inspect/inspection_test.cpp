@@ -58,7 +58,7 @@ TEST_F(InspectionTest, FindsEveryFaultOfABakedModel) {
 }
 
 TEST_F(InspectionTest, ExamplesOfTheSpecificationAreValid) {
-  for (const char* name : {"example.gltf", "example_adaptive.gltf"}) {
+  for (const char* name : {"example.gltf", "example_adaptive.gltf", "example_glossy.gltf"}) {
     const Inspection inspection = inspect_file(
         std::filesystem::path("../docs/extensions/PRTKIT_precomputed_transfer") / name);
     EXPECT_TRUE(inspection.valid()) << to_text(inspection.json);

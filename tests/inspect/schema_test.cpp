@@ -44,7 +44,7 @@ TEST_F(SchemaTest, AcceptsWhatThePipelineWrites) {
 }
 
 TEST_F(SchemaTest, AcceptsTheExamplesOfTheSpecification) {
-  for (const char* name : {"example.gltf", "example_adaptive.gltf"}) {
+  for (const char* name : {"example.gltf", "example_adaptive.gltf", "example_glossy.gltf"}) {
     const std::filesystem::path folder = "../docs/extensions/PRTKIT_precomputed_transfer";
     EXPECT_TRUE(schema_violations(folder / name).empty()) << name;
   }
@@ -77,6 +77,7 @@ TEST_F(SchemaTest, RejectsEachBrokenField) {
   };
   EXPECT_FALSE(violations(broken("conventions", 3), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("channelCount", 2), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(broken("rowCount", 14), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("means", "three"), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("componentCount", 0), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations({{"transfers", nlohmann::json::array()}}, {{"transfer", 0}}).empty());

@@ -84,7 +84,7 @@ TEST_F(RenderJobTest, CompressedTransferOfAnotherMeshIsRefused) {
 }
 
 TEST_F(RenderJobTest, ExamplesOfTheSpecificationAreDrawn) {
-  for (const char* name : {"example.gltf", "example_adaptive.gltf"}) {
+  for (const char* name : {"example.gltf", "example_adaptive.gltf", "example_glossy.gltf"}) {
     RenderOptions options;
     options.picture.model = fs::path("../docs/extensions/PRTKIT_precomputed_transfer") / name;
     options.picture.output = path("example.exr");
