@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
+#include "image/prepare.h"
 #include "image/srgb.h"
 
 namespace prt::image {
@@ -225,16 +226,21 @@ Image read_image(std::span<const std::byte> bytes, const std::string& name, std:
   return decode_checked(bytes, name, max_pixels, true, content);
 }
 
-void write_image(const std::filesystem::path& path, const Image& image, bool no_clobber) {
+std::unique_ptr<AtomicFile> prepare_image(const std::filesystem::path& path, const Image& image,
+                                          bool no_clobber) {
   const std::string extension = lower_extension(path);
   if (extension != ".exr" && extension != ".png") {
     throw Error(ErrorKind::usage, "unknown kind of image",
                 {.file = path.string(), .found = extension, .expected = ".exr or .png"});
   }
-  AtomicFile file(path, no_clobber);
+  auto file = std::make_unique<AtomicFile>(path, no_clobber);
   const std::vector<unsigned char> bytes = encode(image, path, extension == ".png");
-  file.write(std::as_bytes(std::span(bytes)));
-  file.commit();
+  file->write(std::as_bytes(std::span(bytes)));
+  return file;
+}
+
+void write_image(const std::filesystem::path& path, const Image& image, bool no_clobber) {
+  prepare_image(path, image, no_clobber)->commit();
 }
 
 }  // namespace prt::image

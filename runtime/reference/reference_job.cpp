@@ -8,6 +8,7 @@
 #include "core/hash.h"
 #include "gltf/document.h"
 #include "image/environment.h"
+#include "image/prepare.h"
 #include "reference/path_tracer.h"
 #include "runtime/picture.h"
 
@@ -104,12 +105,15 @@ void render_reference(const ReferenceOptions& options, Report& report) {
   report.json()["sample_count"] = result.sample_count;
   report.json()["relative_standard_error"] = relative_standard_error(result);
   put_background_behind(result.radiance, background, picture, camera, lighting.environment);
+  // Both or neither: a disk that has no room for the one shows it before the other is there.
+  const auto noise =
+      options.noise.empty()
+          ? nullptr
+          : image::prepare_image(options.noise, result.standard_error, picture.no_clobber);
   write_picture(picture.output, result.radiance,
                 {.exposure = picture.exposure, .transparent = background == Background::none},
                 picture.no_clobber);
-  if (!options.noise.empty()) {
-    image::write_image(options.noise, result.standard_error, picture.no_clobber);
-  }
+  if (noise) noise->commit();
   remove_checkpoint(options.checkpoint.path);
   stage.reset();
   report.add_input(picture.model);

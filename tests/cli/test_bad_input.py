@@ -268,6 +268,12 @@ class BadOutput(ToolTest):
                 out = self.write("out" + extension, "earlier")
                 self.refused(FAILED, "out", *command, "-o", out, preexec_fn=limit_file_size(200))
 
+    def test_full_disk_for_the_second_output(self):
+        picture, noise = self.folder / "p.png", self.folder / "noise.exr"
+        self.refused(FAILED, "noise.exr", "prt-render", self.quad, "--reference", "--samples", 4,
+                     "--size", "64x64", "-o", picture, "--noise-output", noise,
+                     preexec_fn=limit_file_size(4000))
+
     def test_missing_folder(self):
         for extension, command in self.commands.items():
             with self.subTest(extension):
