@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "image/environment.h"
 #include "sh/basis.h"
+#include "sh/light_edit.h"
 
 namespace prt::runtime {
 
@@ -65,12 +66,10 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count) {
 
 sh::Light default_light(int band_count) {
   constexpr float kLampRadius = 0.35f;  // radians
-  sh::Light light = sh::constant_light(band_count, Vec3(0.25f, 0.28f, 0.33f));
+  const sh::Light sky = sh::constant_light(band_count, Vec3(0.25f, 0.28f, 0.33f));
   const sh::Light lamp = sh::disk_light(band_count, Vec3(-1.0f, 1.2f, 1.0f).normalized(),
                                         kLampRadius, Vec3(7.0f, 6.5f, 5.8f));
-  for (std::size_t color = 0; color < 3; ++color)
-    for (std::size_t k = 0; k < light.coefficients[color].size(); ++k)
-      light.coefficients[color][k] += lamp.coefficients[color][k];
+  sh::Light light = sh::sum(sky, lamp);
   light.source = "prtkit's lamp";
   return light;
 }

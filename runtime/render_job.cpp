@@ -5,6 +5,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/stopwatch.h"
 #include "gl/context.h"
 #include "runtime/picture.h"
 
@@ -13,10 +14,6 @@ namespace prt::runtime {
 namespace {
 
 constexpr int kDefaultBandCount = 5;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 View make_view(const RenderOptions& options, const Model& model) {
   View view;
@@ -38,9 +35,9 @@ Lighting make_distant_lighting(const RenderOptions& options, const Model& model)
 
 /// Turns the light, and reports how long all that follows from it takes.
 void turn_light(Renderer& renderer, float degrees, Report& report) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   renderer.set_light_rotation(light_rotation(degrees));
-  report.json()["light_change_seconds"] = seconds_since(start);
+  report.json()["light_change_seconds"] = stopwatch.seconds();
 }
 
 }  // namespace

@@ -10,7 +10,21 @@ namespace prt::sh {
 
 namespace {
 using std::numbers::pi;
+
+// Values of the basis at an axis become coefficients of the lobe about it.
+template <class T>
+void scale_bands(std::span<const double> zonal, std::span<T> values) {
+  const int band_count = static_cast<int>(zonal.size());
+  for (int l = 0; l < band_count; ++l) {
+    const auto factor =
+        static_cast<T>(std::sqrt(4 * pi / (2 * l + 1)) * zonal[static_cast<std::size_t>(l)]);
+    for (int m = -l; m <= l; ++m) {
+      values[static_cast<std::size_t>(coefficient_index(l, m))] *= factor;
+    }
+  }
 }
+
+}  // namespace
 
 // In the Legendre polynomials, 2 pi times the integral of z P_l(z) over [0, 1] is pi for l = 0,
 // 2 pi / 3 for l = 1, 0 for other odd l, and for even l
@@ -48,14 +62,13 @@ std::vector<double> disk_lobe(int band_count, double radius) {
 }
 
 void turn_lobe(std::span<const double> zonal, const Vec3& axis, std::span<double> coefficients) {
-  const int band_count = static_cast<int>(zonal.size());
-  evaluate(band_count, axis.x, axis.y, axis.z, coefficients);
-  for (int l = 0; l < band_count; ++l) {
-    const double factor = std::sqrt(4 * pi / (2 * l + 1)) * zonal[static_cast<std::size_t>(l)];
-    for (int m = -l; m <= l; ++m) {
-      coefficients[static_cast<std::size_t>(coefficient_index(l, m))] *= factor;
-    }
-  }
+  evaluate(static_cast<int>(zonal.size()), axis.x, axis.y, axis.z, coefficients);
+  scale_bands(zonal, coefficients);
+}
+
+void turn_lobe(std::span<const double> zonal, const Vec3& axis, std::span<float> coefficients) {
+  evaluate(static_cast<int>(zonal.size()), axis, coefficients);
+  scale_bands(zonal, coefficients);
 }
 
 }  // namespace prt::sh

@@ -18,5 +18,6 @@ std::vector<double> disk_lobe(int band_count, double radius);
 /// The lobe about a unit axis instead: coefficient (l,m) = sqrt(4 pi / (2l+1)) z_l Y(l,m)(axis).
 /// zonal.size()² values.
 void turn_lobe(std::span<const double> zonal, const Vec3& axis, std::span<double> coefficients);
+void turn_lobe(std::span<const double> zonal, const Vec3& axis, std::span<float> coefficients);
 
 }  // namespace prt::sh
