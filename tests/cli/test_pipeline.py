@@ -3,6 +3,7 @@ number of threads, files that other programs accept."""
 
 import base64
 import hashlib
+import json
 import math
 import subprocess
 import unittest
@@ -167,14 +168,24 @@ class Pipeline(ToolTest):
         self.done("prt-render", paths["prt.glb"], *light, "-o", png, *size, "--draw", "clusters",
                   "--eye", "0,0.5,3", "--target", "0,0.5,0", "--fov", 40)
 
-    def test_unknown_light_bands_do_not_matter(self):
-        """A light of more or fewer bands than the transfer is cut or padded."""
+    def test_light_of_more_bands_than_the_transfer_is_cut_and_of_fewer_padded(self):
         paths = self.box()
-        for bands in (2, 8):
-            light = self.folder / "other.json"
-            self.done("prt-light", WORLD / "studio.exr", "-o", light, "--bands", bands)
-            self.done("prt-render", paths["prt.glb"], "--light", light, "-o",
-                      self.folder / "x.png", "--size", "32x32")
+
+        def picture(light):
+            out = self.folder / "x.exr"
+            self.done("prt-render", paths["prt.glb"], "--light", light, "-o", out, "--size", "32x32")
+            return out.read_bytes()
+
+        few, many, padded = (self.folder / name for name in ("few.json", "many.json", "padded.json"))
+        for light, bands in ((few, 2), (many, 8)):
+            self.done("prt-light", WORLD / "courtyard.exr", "-o", light, "--bands", bands)
+        self.assertEqual(picture(many), picture(paths["json"]))
+        content = self.load(few)
+        for values in content["coefficients"].values():
+            values += [0] * 12
+        padded.write_text(json.dumps({**content, "band_count": 4}))
+        self.assertEqual(picture(few), picture(padded))
+        self.assertNotEqual(picture(few), picture(many))
 
 
 class CommandLine(ToolTest):
@@ -187,9 +198,14 @@ class CommandLine(ToolTest):
                 self.assertRegex(self.done(tool, "--version").stdout, tool + r" \d+\.\d+\.\d+")
 
     def test_results_go_to_standard_output_only(self):
-        for tool in ("prt-import",):
-            result = self.done(tool, BUNNY, "-o", self.folder / "b.glb")
-            self.assertEqual(result.stdout, "")
+        glb, transfer, baked, light, picture = (
+            self.folder / name for name in ("a.glb", "a.transfer.exr", "a.prt.glb", "a.json", "a.png"))
+        for command in (("prt-import", BOX, "-o", glb), ("prt-light", "--constant", "1,1,1", "-o", light),
+                        ("prt-transfer", glb, "-o", transfer, "--rays", 16),
+                        ("prt-compress", glb, transfer, "-o", baked, "--clusters", 4),
+                        ("prt-render", baked, "--light", light, "-o", picture, "--size", "32x32")):
+            self.assertEqual(self.done(*command, "-v", "--progress").stdout, "", command)
+        json.loads(self.done("prt-inspect", baked, "--json", "-v", "--progress").stdout)
 
     def test_quiet_says_nothing(self):
         result = self.done("prt-import", BUNNY, "-o", self.folder / "b.glb", "-q")
