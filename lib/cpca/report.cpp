@@ -1,5 +1,6 @@
 #include "cpca/report.h"
 
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace prt::cpca {

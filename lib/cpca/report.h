@@ -1,7 +1,7 @@
 // What a run report says about an encoding (docs/tools/prt-compress.md lists the keys).
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 
