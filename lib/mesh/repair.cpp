@@ -177,12 +177,6 @@ void RepairReport::add(const RepairReport& other) {
   boundary_edge_count += other.boundary_edge_count;
 }
 
-bool RepairReport::dropped_anything() const {
-  return nonfinite_vertex_count + unreferenced_vertex_count + degenerate_triangle_count +
-             duplicate_triangle_count + nonfinite_triangle_count >
-         0;
-}
-
 void gather_vertices(TriangleMesh& mesh, const std::vector<std::uint32_t>& source) {
   gather(mesh.positions, source);
   gather(mesh.normals, source);

@@ -41,7 +41,6 @@ struct RepairReport {
   std::size_t boundary_edge_count = 0;         ///< edges of one face
 
   void add(const RepairReport& other);
-  bool dropped_anything() const;
 };
 
 /// Repairs in place. source[i] is the vertex of the input that vertex i of the result came from.
