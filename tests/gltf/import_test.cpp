@@ -107,10 +107,11 @@ TEST_F(GltfImport, StripsTurnEveryOtherTriangleRound) {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
   mesh.normals.assign(5, Vec3(0, 0, 1));
   mesh.indices = {0, 1, 2, 3, 4, 4};
+  quad.primitives[0].material = 1;
   Document document = Document::from_scene(quad);
   const auto bytes = document.glb_bytes();
   std::string glb(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::size_t key = glb.find("\"material\":0");
+  const std::size_t key = glb.find("\"material\":1");
   ASSERT_NE(key, std::string::npos);
   glb.replace(key, 12, "\"mode\":5    ");
   const mesh::Scene scene = import_file(folder_.write("a.glb", glb), {}).document.scene();
