@@ -67,8 +67,8 @@ struct DiffuseStats {
 };
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.
-/// Beyond input and output, memory stays under 500 MB up to a million vertices; the ray engine's
-/// tree, some 350 bytes a vertex (of shadow rays alone 100), is what grows from there. Throws Error
+/// Beyond input and output, memory stays under 500 MB up to some two million vertices; the trees of
+/// rays, about 100 bytes a vertex each, are what grows from there. Throws Error
 /// (usage) on options out of range and Error (bad_input) on positions or normals that are not
 /// finite.
 signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
