@@ -1,12 +1,10 @@
 #include "reference/path_tracer.h"
 
-#include <fmt/format.h>
-
 #include <atomic>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/range.h"
 #include "core/stopwatch.h"
 #include "ray/engine.h"
 #include "reference/kept_tiles.h"
@@ -14,16 +12,6 @@
 #include "reference/tile.h"
 
 namespace prt::reference {
-
-namespace {
-
-void check_range(const char* name, int value, int low, int high) {
-  if (value >= low && value <= high) return;
-  throw Error(ErrorKind::usage, fmt::format("{} out of range", name),
-              {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
-}
-
-}  // namespace
 
 Result trace(const mesh::Scene& scene, const camera::Camera& camera,
              const Illumination& illumination, const Options& options) {

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/range.h"
 #include "core/stopwatch.h"
 #include "sh/basis.h"
 #include "transfer/buried.h"

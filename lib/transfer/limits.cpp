@@ -1,18 +1,11 @@
 #include "transfer/limits.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/range.h"
 
 namespace prt::transfer {
-
-void check_range(const char* name, int value, int low, int high) {
-  if (value >= low && value <= high) return;
-  throw Error(ErrorKind::usage, fmt::format("{} out of range", name),
-              {.found = fmt::format("{}", value), .expected = fmt::format("{} to {}", low, high)});
-}
 
 void check_bounces(int bounce_count, int bounce_ray_count, bool shadowed) {
   check_range("bounce count", bounce_count, 0, 1000);

@@ -6,9 +6,6 @@ namespace prt::transfer {
 constexpr int kMaxRayCount = 1 << 17;        ///< per vertex
 constexpr int kMaxBounceRayCount = 1 << 14;  ///< per vertex: a block's hits stay under 17 MB
 
-/// Throws Error (usage) when low <= value <= high does not hold.
-void check_range(const char* name, int value, int low, int high);
-
 /// Throws Error (usage) when options of bounces are out of range or lack shadows.
 void check_bounces(int bounce_count, int bounce_ray_count, bool shadowed);
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/range.h"
 #include "core/stopwatch.h"
 #include "linalg/product.h"
 #include "mesh/frame.h"

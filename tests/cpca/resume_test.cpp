@@ -24,6 +24,7 @@ void expect_same(const Encoded& found, const Encoded& expected) {
   for (std::size_t i = 0; i < found.levels.size(); ++i) {
     EXPECT_EQ(found.levels[i].component_count, expected.levels[i].component_count);
     EXPECT_EQ(found.levels[i].errors, expected.levels[i].errors);
+    EXPECT_EQ(found.levels[i].is_whole, expected.levels[i].is_whole);
   }
 }
 
