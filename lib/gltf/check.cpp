@@ -6,7 +6,6 @@
 #include <array>
 #include <string_view>
 
-#include "core/checked.h"
 #include "core/error.h"
 #include "gltf/accessor.h"
 
@@ -17,9 +16,6 @@ namespace {
 // An accessor without a view is all zeros: nothing in the file bounds its count.
 constexpr std::size_t kMaxZeroCount = std::size_t{1} << 22;
 constexpr std::size_t kMaxZeroBytes = std::size_t{1} << 28;  // of all of them
-
-// Of meshes that more than one node uses, once for each.
-constexpr std::size_t kMaxCopiedJson = std::size_t{1} << 26;
 
 constexpr std::size_t kMaxTexcoordSets = 1 << 16;
 
@@ -249,47 +245,6 @@ void check_images(const State& state) {
   }
 }
 
-// Nodes may share a mesh: importing gives each its own. Counted before anything is listed or
-// copied.
-void check_instances(const State& state) {
-  std::vector<std::size_t> uses(state.count("meshes"));
-  for (const Json& node : array_of(state.root, "nodes")) {
-    if (const Json* mesh = find(node, "mesh")) ++uses[mesh->get<std::size_t>()];
-  }
-  std::size_t primitives = 0, copied = 0;
-  for (std::size_t m = 0; m < uses.size(); ++m) {
-    const Json& mesh = state.element("meshes", m);
-    primitives = checked_add(primitives, checked_multiply(uses[m], mesh["primitives"].size()));
-    if (uses[m] > 1) copied = checked_add(copied, checked_multiply(uses[m], mesh.dump().size()));
-  }
-  if (primitives > state.limits.max_primitive_count) {
-    reject({state.file, "nodes"}, "too many primitives", std::to_string(primitives),
-           fmt::format("at most {}", state.limits.max_primitive_count));
-  }
-  if (copied > kMaxCopiedJson) {
-    reject({state.file, "nodes"}, "meshes used too often", fmt::format("{} bytes of JSON", copied),
-           fmt::format("at most {}", kMaxCopiedJson));
-  }
-}
-
-// Primitives may share their accessors, too: a small file can describe a huge scene.
-void check_size(const State& state) {
-  const Model model = read_model(state);
-  std::size_t total = 0;
-  for (const PrimitiveUse& use : list_primitives(model)) {
-    const tinygltf::Primitive& primitive = primitive_of(model, use);
-    const auto add = [&](int accessor) {
-      total = checked_add(total, accessor_of(model, accessor).count);
-    };
-    for (const auto& [name, accessor] : primitive.attributes) add(accessor);
-    if (primitive.indices >= 0) add(primitive.indices);
-    if (total > state.limits.max_element_count) {
-      reject({state.file, "scene"}, "too many vertices and indices", fmt::format("{}", total),
-             fmt::format("at most {}", state.limits.max_element_count));
-    }
-  }
-}
-
 }  // namespace
 
 void check_document(const State& state) {
@@ -301,7 +256,6 @@ void check_document(const State& state) {
   check_materials(state);
   check_images(state);
   check_nodes(state);
-  check_instances(state);
   check_size(state);
 }
 

@@ -13,4 +13,8 @@ void check_document(const State& state);
 /// The node graph alone: transforms, children in range, one parent at most, no cycle, depth.
 void check_nodes(const State& state);
 
+/// How much the scene describes: nodes may share meshes and primitives accessors, so that a small
+/// file can ask for a huge one. Last, as it lists the primitives.
+void check_size(const State& state);
+
 }  // namespace prt::gltf
