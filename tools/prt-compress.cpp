@@ -20,6 +20,7 @@ using Job = compress::Job;
 const std::map<std::string, std::optional<cpca::WeightFormat>> kWeights = {
     {"auto", std::nullopt},
     {"float", cpca::WeightFormat::float32},
+    {"half", cpca::WeightFormat::float16},
     {"unorm16", cpca::WeightFormat::unorm16},
     {"unorm8", cpca::WeightFormat::unorm8}};
 

@@ -26,7 +26,7 @@ struct PrecomputedTransfer {
   std::string brdf = "lambert";
   std::string mesh_hash;
   cpca::Encoding encoding;
-  /// Weights of a normalised format are multiples of 1 / cpca::greatest(format) in [0, 1].
+  /// Weights are numbers of the format, as cpca::convert_weights makes them.
   cpca::WeightFormat weight_format = cpca::WeightFormat::float32;
   /// The first cluster of each supercluster, from 0 upwards; empty: every cluster is one.
   std::vector<std::uint32_t> first_clusters = {};

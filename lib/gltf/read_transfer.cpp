@@ -56,6 +56,18 @@ std::vector<float> padded_bases(const cpca::Encoding& encoding, std::vector<floa
   return padded;
 }
 
+// Without one the accessors of the weights tell.
+void read_weight_type(const tinygltf::Value& header, int conventions, PrecomputedTransfer& transfer,
+                      const Where& where) {
+  if (!header.Has(kWeightTypeKey)) return;
+  if (conventions < 3) {
+    reject_transfer(where, kWeightTypeKey, fmt::format("conventions {}", conventions),
+                    "conventions 3");
+  }
+  read_limited(header, kWeightTypeKey, kHalfFloat, kHalfFloat, where);
+  transfer.weight_format = cpca::WeightFormat::float16;
+}
+
 PrecomputedTransfer read_header(const Model& model, const tinygltf::Value& header,
                                 const Where& where) {
   PrecomputedTransfer transfer;
@@ -83,6 +95,7 @@ PrecomputedTransfer read_header(const Model& model, const tinygltf::Value& heade
       reject_transfer(where, "componentCounts", "conventions 1", "conventions 2");
     read_component_counts(model, header, encoding, where);
   }
+  read_weight_type(header, conventions, transfer, where);
   if (header.Has("superclusters")) read_superclusters(model, header, transfer, where);
   const std::size_t bases_size = padded_size(model, mean_size, encoding, "bases", where);
   if (const std::size_t vectors = vector_count(encoding); vectors > 0) {

@@ -13,9 +13,13 @@
 
 namespace prt::gltf {
 
-/// Versions of the conventions: the second has component counts and normalised weights.
-constexpr int kFirstConventions = 1, kLastConventions = 2;
+/// Versions of the conventions: the second has component counts and normalised weights, the third
+/// half floats.
+constexpr int kFirstConventions = 1, kLastConventions = 3;
 constexpr const char *kClusterAttribute = "_PRT_CLUSTER", *kWeightsPrefix = "_PRT_WEIGHTS_";
+/// Says that weights are half floats, by the number that OpenGL has for them: glTF has none.
+constexpr const char* kWeightTypeKey = "weightComponentType";
+constexpr int kHalfFloat = 5131;
 
 inline std::string weights_attribute(std::size_t group) {
   return kWeightsPrefix + std::to_string(group);
@@ -30,10 +34,11 @@ inline std::size_t weight_group_count(int component_count) {
   return (static_cast<std::size_t>(component_count) + 3) / 4;
 }
 
+/// Of the accessors of weights; half floats lie in those of integers of their size.
 inline int component_type_of(cpca::WeightFormat format) {
-  return format == cpca::WeightFormat::float32   ? TINYGLTF_COMPONENT_TYPE_FLOAT
-         : format == cpca::WeightFormat::unorm16 ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
-                                                 : TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+  return format == cpca::WeightFormat::float32  ? TINYGLTF_COMPONENT_TYPE_FLOAT
+         : format == cpca::WeightFormat::unorm8 ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+                                                : TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
 }
 
 /// Exit rows that the conventions define: 1, and n² or n² - 1 for n bands.

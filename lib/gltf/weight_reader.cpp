@@ -22,6 +22,15 @@ void WeightReader::read(const tinygltf::Primitive& primitive, const tinygltf::Va
   }
 }
 
+// Of half floats, whose bits glTF takes for integers.
+std::vector<float> read_halves(const Model& model, int index) {
+  std::vector<float> values;
+  for (const std::uint32_t bits : read_unsigned(model, index)) {
+    values.push_back(cpca::weight_from_half(static_cast<std::uint16_t>(bits)));
+  }
+  return values;
+}
+
 // Finite floats, or normalised integers as shares of 1.
 std::vector<float> WeightReader::read_values(int index, int type, const std::string& name,
                                              const Where& where) {
@@ -37,9 +46,9 @@ std::vector<float> WeightReader::read_values(int index, int type, const std::str
   if (conventions_ < 2 && format != WeightFormat::float32) {
     reject_transfer(where, name, "normalised weights in conventions 1", "conventions 2");
   }
-  check_type(accessor, type, component_type_of(format), format != WeightFormat::float32, name,
-             where);
-  std::vector<float> values = read_floats(model_, index);
+  check_type(accessor, type, component_type_of(format), cpca::is_normalized(format), name, where);
+  std::vector<float> values =
+      format == WeightFormat::float16 ? read_halves(model_, index) : read_floats(model_, index);
   check_finite(values, name, where);
   return values;
 }

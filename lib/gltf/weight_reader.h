@@ -11,12 +11,16 @@
 
 namespace prt::gltf {
 
-/// Weights of one primitive after the other; all of the format of the first.
+/// Weights of one primitive after the other; all of the format that the header tells, or else of
+/// that of the first.
 class WeightReader {
  public:
   /// Both must outlive this; header and component counts of the transfer are known.
   WeightReader(const Model& model, int conventions, PrecomputedTransfer& transfer)
-      : model_(model), conventions_(conventions), transfer_(transfer) {}
+      : model_(model),
+        conventions_(conventions),
+        transfer_(transfer),
+        known_(transfer.weight_format == cpca::WeightFormat::float16) {}
 
   /// Those of the vertices from `first_vertex` on, whose clusters are known. Throws Error
   /// (bad_input).
@@ -33,7 +37,7 @@ class WeightReader {
   const Model& model_;
   int conventions_;
   PrecomputedTransfer& transfer_;
-  bool known_ = false;  // whether a primitive has told the format
+  bool known_;  // whether header or a primitive has told the format
 };
 
 }  // namespace prt::gltf

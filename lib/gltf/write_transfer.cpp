@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "core/error.h"
@@ -39,29 +38,15 @@ void write_clusters(State& state, Json& primitive, std::span<const std::uint32_t
       add_numbers(state, clusters, kStride, TINYGLTF_TARGET_ARRAY_BUFFER);
 }
 
-template <class Integer>
-Bytes to_integers(std::span<const float> values, float greatest) {
-  Bytes bytes(values.size() * sizeof(Integer));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto value = static_cast<Integer>(std::lround(values[i] * greatest));
-    std::memcpy(&bytes[i * sizeof(Integer)], &value, sizeof(value));
-  }
-  return bytes;
-}
-
 std::size_t add_weights(State& state, WeightFormat format, const char* type,
                         std::span<const float> values, int target) {
-  if (format == WeightFormat::float32) return add_floats(state, type, values, target);
-  const float greatest = cpca::greatest(format);
   return add_accessor(state,
                       {.component_type = component_type_of(format),
                        .type = type,
                        .count = values.size() / component_count(type_code(type)),
                        .target = target,
-                       .normalized = true},
-                      format == WeightFormat::unorm16
-                          ? to_integers<std::uint16_t>(values, greatest)
-                          : to_integers<std::uint8_t>(values, greatest));
+                       .normalized = cpca::is_normalized(format)},
+                      cpca::stored_weights(format, values));
 }
 
 void write_weight_attributes(State& state, Json& primitive, const PrecomputedTransfer& transfer,
@@ -143,18 +128,24 @@ void check_writable(const PrecomputedTransfer& transfer, std::size_t vertex_coun
   }
   check_limits(transfer);
   if (transfer.weight_format == WeightFormat::float32) return;
+  const float least = cpca::is_normalized(transfer.weight_format) ? 0.0f : -cpca::kGreatestHalf;
+  const float most = cpca::is_normalized(transfer.weight_format) ? 1.0f : cpca::kGreatestHalf;
   for (const float weight : encoding.weights) {
-    if (weight >= 0.0f && weight <= 1.0f) continue;
-    throw_failed("a normalised weight out of range",
-                 {.found = fmt::format("{}", weight), .expected = "0 to 1"});
+    if (weight >= least && weight <= most) continue;
+    throw_failed(
+        fmt::format("a weight beyond the range of {}", cpca::name_of(transfer.weight_format)),
+        {.found = fmt::format("{}", weight), .expected = fmt::format("{} to {}", least, most)});
   }
+}
+
+int conventions_of(const PrecomputedTransfer& transfer) {
+  if (transfer.weight_format == WeightFormat::float16) return 3;
+  return is_adaptive(transfer.encoding) || transfer.weight_format != WeightFormat::float32 ? 2 : 1;
 }
 
 Json make_header(State& state, const PrecomputedTransfer& transfer) {
   const cpca::Encoding& encoding = transfer.encoding;
-  const bool needs_second =
-      is_adaptive(encoding) || transfer.weight_format != WeightFormat::float32;
-  Json json{{"conventions", needs_second ? 2 : 1},
+  Json json{{"conventions", conventions_of(transfer)},
             {"bandCount", transfer.band_count},
             {"rowCount", transfer.row_count},
             {"channelCount", transfer.channel_count},
@@ -169,6 +160,7 @@ Json make_header(State& state, const PrecomputedTransfer& transfer) {
   if (is_adaptive(encoding)) {
     json["componentCounts"] = add_numbers(state, encoding.component_counts);
   }
+  if (transfer.weight_format == WeightFormat::float16) json[kWeightTypeKey] = kHalfFloat;
   if (!transfer.first_clusters.empty()) {
     json["superclusters"] = add_numbers(state, transfer.first_clusters);
   }

@@ -44,8 +44,8 @@ Json describe(const mesh::Scene& scene, const mesh::Primitive& primitive) {
   return json;
 }
 
-// Vectors of a cluster are orthonormal, with normalised weights orthogonal; a cluster of fewer
-// points than components pads with zeros.
+// Vectors of a cluster are orthonormal, with weights other than floats orthogonal; a cluster of
+// fewer points than components pads with zeros.
 double orthonormality_error(const gltf::PrecomputedTransfer& transfer, int cluster) {
   const cpca::Encoding& encoding = transfer.encoding;
   const bool unit_length = transfer.weight_format == cpca::WeightFormat::float32;

@@ -1,6 +1,7 @@
 """prt-compress: methods, signals of any origin, weights, the search, and what cannot be meant."""
 
 import ast
+import json
 import math
 import os
 import random
@@ -8,7 +9,8 @@ import struct
 import unittest
 import zipfile
 
-from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, SOURCE, WRONG_USAGE, ToolTest, run
+from toolbox import glb as glb_bytes
+from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, SOURCE, WRONG_USAGE, ToolTest, read_glb, run
 
 
 def npy_header(row_count, dimension):
@@ -276,6 +278,47 @@ class Model(ToolTest):
         self.done("prt-compress", glb, transfer, "-o", self.folder / "b.glb", "--max-error", 0.05,
                   "--report", report)
         self.assertLessEqual(self.load(report)["relative_rmse"], 0.05)
+
+    def test_half_floats_are_stored_shown_and_drawn(self):
+        glb, transfer = self.folder / "a.glb", self.folder / "a.transfer.exr"
+        self.done("prt-import", SOURCE / "data/colored_box.obj", "-o", glb, "--max-edge", 0.2)
+        self.done("prt-transfer", glb, "-o", transfer, "--rays", 128)
+        light, report, difference = (self.folder / n for n in ("l.json", "c.json", "d.json"))
+        self.done("prt-light", "--directional", "0,1,1,2,2,2", "-o", light)
+        counts = ("--clusters", 8, "--components", 5, "--no-coherence", "--report", report)
+        for method in ("iterative", "adaptive"):
+            pictures = {}
+            for weights in ("float", "half"):
+                baked = self.folder / f"{weights}.prt.glb"
+                self.done("prt-compress", glb, transfer, "-o", baked, "--method", method,
+                          "--weights", weights, *counts)
+                self.assertEqual(self.load(report)["weights"], weights)
+                shown = json.loads(self.done("prt-inspect", baked, "--json").stdout)
+                self.assertEqual(shown["precomputed_transfer"]["weights"], weights)
+                for draw in ("single", "clusters"):
+                    pictures[weights, draw] = self.folder / f"{weights}_{draw}.exr"
+                    self.done("prt-render", baked, "--light", light, "--size", "96x96", "--draw",
+                              draw, "-o", pictures[weights, draw])
+            for draw in ("single", "clusters"):
+                self.done("prt-inspect", "--compare", pictures["half", draw],
+                          pictures["float", draw], "--report", difference)
+                error = self.load(difference)["result"]["comparison"]["relative_rmse"]
+                self.assertGreater(error, 0)
+                self.assertLess(error, 1e-3)
+        content, binary = read_glb(self.folder / "half.prt.glb")
+        header = content["extensions"]["PRTKIT_precomputed_transfer"]["transfers"][0]
+        self.assertEqual((header["conventions"], header["weightComponentType"]), (3, 5131))
+        primitive = content["meshes"][0]["primitives"][0]["extensions"]
+        accessor = content["accessors"][primitive["PRTKIT_precomputed_transfer"]["weights"]]
+        self.assertEqual(accessor["componentType"], 5123)
+        view = content["bufferViews"][accessor["bufferView"]]
+        for bits in (0x7c00, 0xfc00, 0x7e00):
+            broken = bytearray(binary)
+            struct.pack_into("<H", broken, view.get("byteOffset", 0) + 6, bits)
+            self.refused(BAD_INPUT, "weights: found a number that is not finite", "prt-render",
+                         self.write("bad.glb", glb_bytes(content, bytes(broken))), "--light",
+                         light, "-o", self.folder / "bad.png")
+            self.assertEqual(run("prt-inspect", self.folder / "bad.glb").returncode, BAD_INPUT)
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ class Pipeline(ToolTest):
         self.assertLessEqual(coherent["squared_error"],
                              1.01 * coherent["squared_error_reclassified"])
         sizes = {}
-        for weights in ("float", "unorm16", "unorm8"):
+        for weights in ("float", "half", "unorm16", "unorm8"):
             self.done(*compress, report, "--no-coherence", "--weights", weights)
             plain = self.load(report)
             self.assertGreater(plain["overdraw_initial"], 1)
@@ -89,7 +89,9 @@ class Pipeline(ToolTest):
             sizes[weights] = (plain["bytes"], plain["squared_error"])
         self.assertGreater(sizes["float"][0], sizes["unorm16"][0])
         self.assertGreater(sizes["unorm16"][0], sizes["unorm8"][0])
+        self.assertEqual(sizes["half"][0], sizes["unorm16"][0])
         self.assertLessEqual(sizes["float"][1], sizes["unorm8"][1])
+        self.assertLess(sizes["half"][1], 1.01 * sizes["float"][1])
         self.refused(WRONG_USAGE, "excludes", *compress, report, "--no-coherence", "--registers", 9)
 
     def test_same_bytes_for_any_thread_count_and_twice(self):
@@ -110,6 +112,12 @@ class Pipeline(ToolTest):
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertIn("_prt_cluster", result.stdout.lower())
 
+    def test_another_loader_evaluates_the_examples(self):
+        result = subprocess.run(["node", SOURCE / "tests/gltf/shade_three.mjs", EXAMPLES],
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("example_half.gltf: Uint16Array", result.stdout)
+
     def test_every_kind_of_file_passes_the_validator(self):
         paths, files = self.box(), sorted(EXAMPLES.glob("*.gltf"))
         self.assertGreater(len(files), 1)
@@ -119,6 +127,9 @@ class Pipeline(ToolTest):
         for name, transfer, *options in (
                 ("adaptive", paths["transfer.exr"], "--method", "adaptive", "--components", 4),
                 ("unorm8", paths["transfer.exr"], "--components", 4, "--weights", "unorm8"),
+                ("half", paths["transfer.exr"], "--components", 4, "--weights", "half"),
+                ("adaptive_half", paths["transfer.exr"], "--method", "adaptive", "--components", 4,
+                 "--weights", "half"),
                 ("vq", paths["transfer.exr"], "--method", "vq"),
                 ("glossy", glossy, "--components", 4)):
             files.append(self.folder / f"{name}.glb")

@@ -57,10 +57,11 @@ TEST(Scaling, MakesPlainErrorsWeightedOnes) {
   const std::vector<float> coefficients{1e6f, 0.25f, 3.0f, 1e-6f};
   const Scaling scaling(signal, coefficients);
   scaling.apply(signal);
-  for (const WeightFormat format : {WeightFormat::float32, WeightFormat::unorm16}) {
+  for (const WeightFormat format :
+       {WeightFormat::float32, WeightFormat::float16, WeightFormat::unorm16}) {
     cpca::Encoding encoding =
         cpca::encode_static(signal, 4, {.cluster_count = 5, .component_count = 1}).encoding;
-    cpca::normalize_weights(format, encoding);
+    cpca::convert_weights(format, encoding);
     const Errors scaled = measure(encoding, signal, {});
     scaling.undo(format, encoding);
     const Errors weighted = measure(encoding, original, {.coefficients = coefficients});

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -141,12 +142,12 @@ PrecomputedTransfer after_round_trip(const PrecomputedTransfer& transfer, std::s
   return after;
 }
 
-TEST(GltfRoundTrip, AdaptiveAndNormalizedTransferComesBackAndGoesWithoutATrace) {
+TEST(GltfRoundTrip, AdaptiveTransferAndEveryFormatOfWeightsComeBackAndGoWithoutATrace) {
   for (const bool adaptive : {false, true}) {
-    for (const auto format :
-         {cpca::WeightFormat::float32, cpca::WeightFormat::unorm16, cpca::WeightFormat::unorm8}) {
+    for (const auto format : {cpca::WeightFormat::float32, cpca::WeightFormat::float16,
+                              cpca::WeightFormat::unorm16, cpca::WeightFormat::unorm8}) {
       PrecomputedTransfer before = adaptive ? adaptive_transfer() : samples::transfer(6, 4, 5);
-      cpca::normalize_weights(format, before.encoding);
+      cpca::convert_weights(format, before.encoding);
       before.weight_format = format;
       before.first_clusters = {0, 1, 3};
       std::string json;
@@ -157,8 +158,12 @@ TEST(GltfRoundTrip, AdaptiveAndNormalizedTransferComesBackAndGoesWithoutATrace) 
       EXPECT_EQ(after.encoding.means, before.encoding.means);
       EXPECT_EQ(after.encoding.bases, before.encoding.bases);
       EXPECT_EQ(after.encoding.weights, before.encoding.weights);
-      const bool first = !adaptive && format == cpca::WeightFormat::float32;
-      EXPECT_NE(json.find(first ? "\"conventions\":1" : "\"conventions\":2"), std::string::npos);
+      const bool is_half = format == cpca::WeightFormat::float16;
+      const int conventions = is_half                                             ? 3
+                              : adaptive || format != cpca::WeightFormat::float32 ? 2
+                                                                                  : 1;
+      EXPECT_NE(json.find(fmt::format("\"conventions\":{},", conventions)), std::string::npos);
+      EXPECT_EQ(json.find("\"weightComponentType\":5131") != std::string::npos, is_half);
       EXPECT_EQ(json.find("_PRT_WEIGHTS_0") == std::string::npos, adaptive);
     }
   }
@@ -167,8 +172,8 @@ TEST(GltfRoundTrip, AdaptiveAndNormalizedTransferComesBackAndGoesWithoutATrace) 
 TEST(GltfRoundTrip, StoredBytesAreThoseThatTheTransferAdds) {
   for (const bool adaptive : {false, true}) {
     PrecomputedTransfer transfer = adaptive ? adaptive_transfer() : samples::transfer(6, 4, 5);
-    cpca::normalize_weights(cpca::WeightFormat::unorm16, transfer.encoding);
-    transfer.weight_format = cpca::WeightFormat::unorm16;
+    transfer.weight_format = adaptive ? cpca::WeightFormat::unorm16 : cpca::WeightFormat::float16;
+    cpca::convert_weights(transfer.weight_format, transfer.encoding);
     transfer.first_clusters = {0, 2};
     Document document = Document::from_scene(samples::scene());
     const auto binary_bytes = [&] {  // the second chunk: after the first, its own length
@@ -201,12 +206,19 @@ TEST(GltfRoundTrip, MoreClustersThanAnIndexCanNameAreRefused) {
   EXPECT_THROW(document.set_precomputed_transfer(transfer), Error);
 }
 
-TEST(GltfRoundTrip, NormalizedWeightsOutOfRangeAreRefused) {
-  PrecomputedTransfer transfer = samples::transfer(6);
-  transfer.weight_format = cpca::WeightFormat::unorm8;
-  transfer.encoding.weights[3] = 1.5f;
-  Document document = Document::from_scene(samples::scene());
-  EXPECT_THROW(document.set_precomputed_transfer(transfer), Error);
+TEST(GltfRoundTrip, WeightsBeyondTheRangeOfTheirFormatAreRefused) {
+  for (const auto& [format, weight] : {std::pair(cpca::WeightFormat::unorm8, 1.5f),
+                                       {cpca::WeightFormat::unorm16, -0.5f},
+                                       {cpca::WeightFormat::float16, 65505.0f},
+                                       {cpca::WeightFormat::float16, NAN}}) {
+    PrecomputedTransfer transfer = samples::transfer(6);
+    for (float& value : transfer.encoding.weights) value = 0.5f;
+    transfer.weight_format = format;
+    Document document = Document::from_scene(samples::scene());
+    EXPECT_NO_THROW(document.set_precomputed_transfer(transfer));
+    transfer.encoding.weights[3] = weight;
+    EXPECT_THROW(document.set_precomputed_transfer(transfer), Error) << weight;
+  }
 }
 
 TEST(GltfRoundTrip, WritesNoTransferThatItWouldNotRead) {

@@ -73,6 +73,19 @@ TEST(Specification, AdaptiveExampleWithNormalizedWeightsDoesToo) {
   EXPECT_EQ(transfer->first_clusters, std::vector<std::uint32_t>({0, 2}));
 }
 
+TEST(Specification, ExampleWithHalfFloatsDoesToo) {
+  const nlohmann::json vectors = test_vectors().at("half");
+  expect_exit_radiance(vectors);
+  const auto transfer =
+      Document::load(kFolder / vectors.at("file").get<std::string>()).precomputed_transfer();
+  EXPECT_EQ(transfer->weight_format, cpca::WeightFormat::float16);
+  ASSERT_GE(vectors.at("values").size(), 10u);
+  for (const auto& entry : vectors.at("values")) {
+    EXPECT_EQ(cpca::weight_from_half(entry.at("bits").get<std::uint16_t>()),
+              entry.at("value").get<float>());
+  }
+}
+
 TEST(Specification, GlossyExampleGivesTheRadianceTowardsTheEye) {
   const nlohmann::json vectors = test_vectors().at("glossy");
   const Document document = Document::load(kFolder / vectors.at("file").get<std::string>());

@@ -1,5 +1,6 @@
 // PRTKIT_precomputed_transfer as a file may wrongly have it, and accessors that others share with
 // it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -37,7 +38,7 @@ class BrokenExample : public testing::Test {
   template <class T>
   void set(const char* name, std::size_t vertex, std::size_t component, T value) {
     const ordered_json& view = json_["bufferViews"][attribute(name)["bufferView"].get<int>()];
-    const std::size_t stride = view.value("byteStride", std::size_t{16});
+    const std::size_t stride = view.value("byteStride", 4 * sizeof(T));
     const std::size_t offset = view.value("byteOffset", std::size_t{0}) +
                                attribute(name).value("byteOffset", std::size_t{0}) +
                                vertex * stride + component * sizeof(T);
@@ -87,6 +88,12 @@ class GltfAdaptiveTransfer : public BrokenExample {
   }
 };
 
+// 4 vertices, 2 clusters, 5 components, weights as half floats.
+class GltfHalfTransfer : public BrokenExample {
+ protected:
+  GltfHalfTransfer() : BrokenExample("example_half.gltf") {}
+};
+
 #define EXPECT_PART(part) EXPECT_PRED_FORMAT2(testing::IsSubstring, part, error())
 
 TEST_F(GltfTransfer, ExampleIsGood) { EXPECT_EQ(error(), "no error"); }
@@ -118,7 +125,7 @@ TEST_F(GltfTransfer, RejectsAttributesOfOtherTypes) {
 
 TEST_F(GltfTransfer, RejectsNumbersOutOfRange) {
   for (const auto& [key, value] :
-       {std::pair("conventions", 3), std::pair("bandCount", 17), std::pair("channelCount", 2),
+       {std::pair("conventions", 4), std::pair("bandCount", 17), std::pair("channelCount", 2),
         std::pair("clusterCount", 0), std::pair("componentCount", -1), std::pair("means", 999)}) {
     const ordered_json before = header()[key];
     header()[key] = value;
@@ -215,6 +222,47 @@ TEST_F(GltfAdaptiveTransfer, RejectsPaddingBeyondTheLimits) {
 TEST_F(GltfAdaptiveTransfer, RejectsRowsThatAreNoSetOfFunctions) {
   header()["rowCount"] = 2;
   EXPECT_PART("rowCount: found 2, expected 1, or n² or n² - 1");
+}
+
+TEST_F(GltfHalfTransfer, ExampleIsGood) { EXPECT_EQ(error(), "no error"); }
+
+TEST_F(GltfHalfTransfer, RejectsInfiniteWeightsAndThoseThatAreNoNumbers) {
+  for (const std::uint16_t bits : {0x7c00, 0xfc00, 0x7e00, 0x7c01, 0xffff}) {
+    const Bytes before = bytes_;
+    set("_PRT_WEIGHTS_0", 2, 1, bits);
+    EXPECT_PART("_PRT_WEIGHTS_0: found a number that is not finite");
+    bytes_ = before;
+  }
+}
+
+TEST_F(GltfHalfTransfer, RejectsWeightsOfNoComponent) {
+  set<std::uint16_t>("_PRT_WEIGHTS_1", 2, 1, 0x8000);  // -0
+  EXPECT_EQ(error(), "no error");
+  set<std::uint16_t>("_PRT_WEIGHTS_1", 2, 1, 0x0001);
+  EXPECT_PART("_PRT_WEIGHTS_1: found a weight of no component");
+}
+
+TEST_F(GltfHalfTransfer, NeedsTheThirdConventions) {
+  for (const int conventions : {1, 2}) {
+    header()["conventions"] = conventions;
+    EXPECT_PART(fmt::format("weightComponentType: found conventions {}", conventions));
+  }
+}
+
+TEST_F(GltfHalfTransfer, RejectsOtherTypesThanHeaderAndSpecificationSay) {
+  for (const ordered_json& type : {ordered_json(5126), ordered_json("HALF_FLOAT")}) {
+    header()["weightComponentType"] = type;
+    EXPECT_PART("weightComponentType: found");
+  }
+  header()["weightComponentType"] = 5131;
+  attribute("_PRT_WEIGHTS_1")["normalized"] = true;
+  EXPECT_PART("_PRT_WEIGHTS_1: found an accessor of another type");
+  attribute("_PRT_WEIGHTS_1").erase("normalized");
+  attribute("_PRT_WEIGHTS_0")["componentType"] = 5122;
+  EXPECT_PART("_PRT_WEIGHTS_0: found an accessor of another type");
+  attribute("_PRT_WEIGHTS_0")["componentType"] = 5123;
+  header().erase("weightComponentType");  // integers that are not normalised are no weights
+  EXPECT_PART("_PRT_WEIGHTS_0: found an accessor of another type");
 }
 
 TEST_F(GltfTransfer, RemovingKeepsAccessorsThatOthersUse) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "gltf/document.h"
 #include "image/image.h"
 #include "sample_files.h"
@@ -42,6 +43,29 @@ TEST_F(InspectionTest, BakedModelShowsItsClusters) {
   EXPECT_LT(baked["orthonormality_error"], 1e-6);
 }
 
+TEST_F(InspectionTest, HalfFloatsTakeHalfTheRoomAndThoseThatAreNoNumbersAreFindings) {
+  gltf::PrecomputedTransfer half = transfer();
+  half.weight_format = cpca::WeightFormat::float16;
+  const auto path = write_baked(half);
+  const Inspection good = inspect_file(path);
+  EXPECT_TRUE(good.valid()) << to_text(good.json);
+  EXPECT_EQ(good.json["precomputed_transfer"]["weights"], "half");
+  EXPECT_EQ(good.json["precomputed_transfer"]["bytes"]["weights"], 8 * 8);
+
+  // The last vertex has weight 1.5; an infinite one and one that is no number in its place.
+  std::string bytes = read_text_file(path);
+  const std::string last("\x00\x3e\x00\x00\x00\x00\x00\x00", 8);
+  const std::size_t at = bytes.rfind(last);
+  ASSERT_NE(at, bytes.npos);
+  for (const char* bits : {"\x00\x7c", "\x00\xfc", "\x01\x7e"}) {
+    bytes.replace(at, 2, bits, 2);
+    std::ofstream(path, std::ios::binary) << bytes;
+    const Inspection bad = inspect_file(path);
+    EXPECT_FALSE(bad.valid());
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "a number that is not finite", to_text(bad.json));
+  }
+}
+
 TEST_F(InspectionTest, FindsEveryFaultOfABakedModel) {
   gltf::PrecomputedTransfer bad = transfer();
   bad.mesh_hash = "of another mesh";
@@ -58,7 +82,8 @@ TEST_F(InspectionTest, FindsEveryFaultOfABakedModel) {
 }
 
 TEST_F(InspectionTest, ExamplesOfTheSpecificationAreValid) {
-  for (const char* name : {"example.gltf", "example_adaptive.gltf", "example_glossy.gltf"}) {
+  for (const char* name :
+       {"example.gltf", "example_adaptive.gltf", "example_half.gltf", "example_glossy.gltf"}) {
     const Inspection inspection = inspect_file(
         std::filesystem::path("../docs/extensions/PRTKIT_precomputed_transfer") / name);
     EXPECT_TRUE(inspection.valid()) << to_text(inspection.json);

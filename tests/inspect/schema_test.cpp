@@ -44,7 +44,8 @@ TEST_F(SchemaTest, AcceptsWhatThePipelineWrites) {
 }
 
 TEST_F(SchemaTest, AcceptsTheExamplesOfTheSpecification) {
-  for (const char* name : {"example.gltf", "example_adaptive.gltf", "example_glossy.gltf"}) {
+  for (const char* name :
+       {"example.gltf", "example_adaptive.gltf", "example_half.gltf", "example_glossy.gltf"}) {
     const std::filesystem::path folder = "../docs/extensions/PRTKIT_precomputed_transfer";
     EXPECT_TRUE(schema_violations(folder / name).empty()) << name;
   }
@@ -57,6 +58,21 @@ TEST_F(SchemaTest, ComponentCountsBelongToTheSecondConventions) {
   adaptive["transfers"][0]["conventions"] = 2;
   EXPECT_TRUE(violations(adaptive, {{"transfer", 0}, {"weights", 6}}).empty());
   EXPECT_FALSE(violations(adaptive, {{"transfer", 0}, {"weights", "x"}}).empty());
+}
+
+TEST_F(SchemaTest, HalfFloatsBelongToTheThirdConventions) {
+  nlohmann::json half = good();
+  half["transfers"][0]["weightComponentType"] = 5131;
+  for (const int conventions : {1, 2, 3}) {
+    half["transfers"][0]["conventions"] = conventions;
+    EXPECT_EQ(violations(half, {{"transfer", 0}}).empty(), conventions == 3) << conventions;
+  }
+  half["transfers"][0]["componentCounts"] = 5;
+  EXPECT_TRUE(violations(half, {{"transfer", 0}, {"weights", 6}}).empty());
+  for (const nlohmann::json& other : {nlohmann::json(5126), nlohmann::json("HALF_FLOAT")}) {
+    half["transfers"][0]["weightComponentType"] = other;
+    EXPECT_FALSE(violations(half, {{"transfer", 0}, {"weights", 6}}).empty()) << other;
+  }
 }
 
 TEST_F(SchemaTest, NamesWhatBreaksIt) {
@@ -75,7 +91,7 @@ TEST_F(SchemaTest, RejectsEachBrokenField) {
     json["transfers"][0][key] = value;
     return json;
   };
-  EXPECT_FALSE(violations(broken("conventions", 3), {{"transfer", 0}}).empty());
+  EXPECT_FALSE(violations(broken("conventions", 4), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("channelCount", 2), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("rowCount", 14), {{"transfer", 0}}).empty());
   EXPECT_FALSE(violations(broken("means", "three"), {{"transfer", 0}}).empty());
