@@ -53,7 +53,7 @@ CompressedDrawing::CompressedDrawing(const Model& model, const ExitStage& exit,
       index_count_(model.indices.size()),
       constant_count_(first_constants(model.transfer->encoding).back()),
       products_(*model.transfer, exit.layout()),
-      weights_(model.transfer->encoding, exit.end_location()) {
+      weights_(*model.transfer, exit.end_location()) {
   const cpca::Encoding& encoding = model.transfer->encoding;
   check_uniforms(encoding, exit.layout());
   constants_of_vertices_ =

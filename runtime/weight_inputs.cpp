@@ -6,12 +6,26 @@
 #include <vector>
 
 #include "core/error.h"
+#include "gl/context.h"
 
 namespace prt::runtime {
 
 namespace {
 
 constexpr int kTableUnit = 1;
+
+gl::Scalar scalar_of(cpca::WeightFormat format) {
+  switch (format) {
+    case cpca::WeightFormat::float16:
+      return gl::Scalar::float16;
+    case cpca::WeightFormat::unorm16:
+      return gl::Scalar::unorm16;
+    case cpca::WeightFormat::unorm8:
+      return gl::Scalar::unorm8;
+    default:
+      return gl::Scalar::float32;
+  }
+}
 
 /// Weights in fours, zero padded.
 std::vector<float> padded_weights(const cpca::Encoding& encoding) {
@@ -24,10 +38,10 @@ std::vector<float> padded_weights(const cpca::Encoding& encoding) {
   return padded;
 }
 
-/// Weights that clusters have, point after point in one row of fours; and, two for each point, the
-/// number of its first weight and how many they are.
+/// Weights that clusters have, point after point in one row, zero padded to fours; and, two for
+/// each point, the number of its first weight and how many they are.
 struct PackedWeights {
-  std::vector<Vec4> values;
+  std::vector<float> values;
   std::vector<std::uint32_t> ranges;
 };
 
@@ -38,24 +52,31 @@ PackedWeights packed_weights(const cpca::Encoding& encoding) {
     const auto own = static_cast<std::uint32_t>(
         encoding.component_count_of(static_cast<int>(encoding.cluster_of_point[p])));
     packed.ranges.insert(packed.ranges.end(), {count, own});
-    for (std::uint32_t i = 0; i < own; ++i, ++count) {
-      if (count % 4 == 0) packed.values.emplace_back(0.0f);
-      packed.values.back()[static_cast<int>(count % 4)] =
-          encoding.weights[p * static_cast<std::size_t>(encoding.component_count) + i];
-    }
+    const float* const weights =
+        encoding.weights.data() + p * static_cast<std::size_t>(encoding.component_count);
+    packed.values.insert(packed.values.end(), weights, weights + own);
+    count += own;
   }
+  packed.values.resize((packed.values.size() + 3) / 4 * 4);
   return packed;
 }
 
 }  // namespace
 
-WeightInputs::WeightInputs(const cpca::Encoding& encoding, unsigned int end_location)
-    : is_adaptive_(!encoding.component_counts.empty()), component_count_(encoding.component_count) {
+WeightInputs::WeightInputs(const gltf::PrecomputedTransfer& transfer, unsigned int end_location)
+    : is_adaptive_(!transfer.encoding.component_counts.empty()),
+      component_count_(transfer.encoding.component_count) {
+  const cpca::Encoding& encoding = transfer.encoding;
+  cpca::WeightFormat format = transfer.weight_format;
+  if (is_adaptive_ && format == cpca::WeightFormat::unorm16 && !gl::limits().unorm16_textures)
+    format = cpca::WeightFormat::float32;
+  scalar_ = scalar_of(format);
+  scalar_bytes_ = cpca::bytes_of(format);
   if (is_adaptive_) {
     const PackedWeights packed = packed_weights(encoding);
     weights_ = gl::Buffer(std::span(packed.ranges));
-    table_ = gl::Table(packed.values.size());
-    table_.upload(packed.values);
+    table_ = gl::Table(packed.values.size() / 4, scalar_);
+    table_.upload(cpca::stored_weights(format, packed.values));
     return;
   }
   const int most = 4 * static_cast<int>(end_location - kFirstWeightLocation);
@@ -64,7 +85,8 @@ WeightInputs::WeightInputs(const cpca::Encoding& encoding, unsigned int end_loca
                  {.found = fmt::format("{} components", component_count_),
                   .expected = fmt::format("at most {}", most),
                   .advice = "Compress with fewer components."});
-  weights_ = gl::Buffer(std::span<const float>(padded_weights(encoding)));
+  weights_ = gl::Buffer(
+      std::span<const std::byte>(cpca::stored_weights(format, padded_weights(encoding))));
 }
 
 gl::Defines WeightInputs::defines() const {
@@ -82,9 +104,10 @@ gl::Defines WeightInputs::defines() const {
 void WeightInputs::attach(gl::VertexArray& array) const {
   if (is_adaptive_) return array.set_uints(kFirstWeightLocation, weights_, 2);
   const std::size_t vector_count = (static_cast<std::size_t>(component_count_) + 3) / 4;
+  const std::size_t vector_bytes = 4 * scalar_bytes_;
   for (std::size_t i = 0; i < vector_count; ++i)
     array.set_floats(kFirstWeightLocation + static_cast<unsigned int>(i), weights_, 4,
-                     vector_count * sizeof(Vec4), i * sizeof(Vec4));
+                     vector_count * vector_bytes, i * vector_bytes, scalar_);
 }
 
 void WeightInputs::bind(const gl::Program& program) const {

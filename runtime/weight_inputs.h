@@ -1,10 +1,11 @@
 // The weights of vertices as shaders/weights.glsl reads them: attributes from kFirstWeightLocation
-// on, or, when clusters have different numbers of vectors, a table.
+// on, or, when clusters have different numbers of vectors, a table. OpenGL has them in the format
+// of the file, half floats and normalised integers too, which vertices fetch as floats.
 #pragma once
 
-#include "cpca/encoding.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gltf/precomputed_transfer.h"
 
 namespace prt::runtime {
 
@@ -14,7 +15,7 @@ class WeightInputs {
  public:
   /// Attribute locations from `end_location` on are used otherwise. Throws Error (failed) when the
   /// components need more.
-  WeightInputs(const cpca::Encoding& encoding, unsigned int end_location);
+  WeightInputs(const gltf::PrecomputedTransfer& transfer, unsigned int end_location);
 
   gl::Defines defines() const;
   void attach(gl::VertexArray& array) const;
@@ -24,6 +25,8 @@ class WeightInputs {
  private:
   bool is_adaptive_;
   int component_count_;
+  std::size_t scalar_bytes_;
+  gl::Scalar scalar_;
   gl::Buffer weights_;  // of adaptive encodings, the ranges in the table
   gl::Table table_;
 };

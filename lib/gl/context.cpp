@@ -74,6 +74,8 @@ Limits limits() {
   limits.max_varying_vectors = varying_components / 4;
   limits.float32_filters =
       epoxy_is_desktop_gl() || epoxy_has_gl_extension("GL_OES_texture_float_linear");
+  limits.unorm16_textures =
+      epoxy_is_desktop_gl() || epoxy_has_gl_extension("GL_EXT_texture_norm16");
   limits.max_samples = max_samples_of(limits.float32_targets ? GL_RGBA32F : GL_RGBA16F);
   return limits;
 }

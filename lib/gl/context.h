@@ -57,6 +57,7 @@ struct Limits {
   int max_varying_vectors;         ///< vec4 each, from vertices to pixels
   bool float32_targets;            ///< RGBA32F can be drawn to and blended
   bool float32_filters;            ///< RGBA32F can be filtered
+  bool unorm16_textures;           ///< normalised integers of 16 bits can be textures
   int max_samples;                 ///< of the colour format that targets use
 };
 Limits limits();

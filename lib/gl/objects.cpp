@@ -18,6 +18,38 @@ unsigned int generate(void (*generator)(GLsizei, GLuint*)) {
   return name;
 }
 
+/// What OpenGL calls a Scalar: type of its numbers, format of textures of four of them.
+struct ScalarType {
+  GLenum type;
+  GLboolean normalized;
+  std::size_t bytes;
+  GLenum texture_format;
+};
+
+ScalarType type_of(Scalar scalar) {
+  switch (scalar) {
+    case Scalar::float16:
+      return {GL_HALF_FLOAT, GL_FALSE, 2, GL_RGBA16F};
+    case Scalar::unorm16:
+      return {GL_UNSIGNED_SHORT, GL_TRUE, 2, GL_RGBA16};
+    case Scalar::unorm8:
+      return {GL_UNSIGNED_BYTE, GL_TRUE, 1, GL_RGBA8};
+    default:
+      return {GL_FLOAT, GL_FALSE, 4, GL_RGBA32F};
+  }
+}
+
+/// A constant power of two, so that the shader need not divide; OpenGL ES 3.0 promises as much.
+constexpr int kTableWidth = 2048;
+
+int table_height(std::size_t count) {
+  const std::size_t height = std::max<std::size_t>((count + kTableWidth - 1) / kTableWidth, 1);
+  if (height > static_cast<std::size_t>(limits().max_texture_size))
+    throw_failed("the model's data do not fit a texture of this OpenGL",
+                 {.found = std::to_string(count) + " vec4"});
+  return static_cast<int>(height);
+}
+
 const void* byte_offset(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
 
 }  // namespace
@@ -41,12 +73,13 @@ VertexArray::VertexArray()
 void VertexArray::bind() const { glBindVertexArray(name_.get()); }
 
 void VertexArray::set_floats(unsigned int location, const Buffer& buffer, int component_count,
-                             std::size_t stride, std::size_t offset) {
+                             std::size_t stride, std::size_t offset, Scalar scalar) {
+  const ScalarType type = type_of(scalar);
   bind();
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
   glEnableVertexAttribArray(location);
-  glVertexAttribPointer(location, component_count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                        byte_offset(offset));
+  glVertexAttribPointer(location, component_count, type.type, type.normalized,
+                        static_cast<GLsizei>(stride), byte_offset(offset));
 }
 
 void VertexArray::set_uints(unsigned int location, const Buffer& buffer, int component_count) {
@@ -62,6 +95,10 @@ void VertexArray::set_indices(const Buffer& buffer) {
 }
 
 Texture::Texture(Format format, int width, int height, const float* pixels)
+    : Texture(format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F, GL_FLOAT, width, height,
+              pixels) {}
+
+Texture::Texture(unsigned int format, unsigned int type, int width, int height, const void* pixels)
     : name_(generate([](GLsizei n, GLuint* names) { glGenTextures(n, names); })),
       width_(width),
       height_(height) {
@@ -71,8 +108,8 @@ Texture::Texture(Format format, int width, int height, const float* pixels)
                  {.found = std::to_string(width) + "x" + std::to_string(height),
                   .expected = "at most " + std::to_string(limit) + " pixels a side"});
   glBindTexture(GL_TEXTURE_2D, name());
-  const GLint internal = format == Format::rgba16f ? GL_RGBA16F : GL_RGBA32F;
-  glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, GL_RGBA, GL_FLOAT, pixels);
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, GL_RGBA, type,
+               pixels);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   check_errors("storing a texture");
@@ -83,28 +120,25 @@ void Texture::bind(int unit) const {
   glBindTexture(GL_TEXTURE_2D, name());
 }
 
-Table::Table(std::size_t count) : count_(count) {
-  // A constant power of two, so that the shader need not divide; OpenGL ES 3.0 promises as much.
-  constexpr std::size_t kRowLength = 2048;
-  const std::size_t height = std::max<std::size_t>((count + kRowLength - 1) / kRowLength, 1);
-  if (height > static_cast<std::size_t>(limits().max_texture_size))
-    throw_failed("the model's data do not fit a texture of this OpenGL",
-                 {.found = std::to_string(count) + " vec4"});
-  static_cast<Texture&>(*this) =
-      Texture(Format::rgba32f, static_cast<int>(kRowLength), static_cast<int>(height));
-}
+Table::Table(std::size_t count, Scalar scalar)
+    : Texture(type_of(scalar).texture_format, type_of(scalar).type, kTableWidth,
+              table_height(count), nullptr),
+      count_(count),
+      scalar_(scalar) {}
 
-void Table::upload(std::span<const Vec4> values) {
-  if (values.size() != count_) throw_failed("a table keeps its size");
+void Table::upload(std::span<const std::byte> values) {
+  const ScalarType type = type_of(scalar_);
+  const std::size_t element_bytes = 4 * type.bytes;
+  if (values.size() != count_ * element_bytes) throw_failed("a table keeps its size");
   glBindTexture(GL_TEXTURE_2D, name());
   const std::size_t full_rows = count_ / static_cast<std::size_t>(width_);
   const std::size_t rest = count_ % static_cast<std::size_t>(width_);
   const auto rows = static_cast<GLsizei>(full_rows);
   if (rows > 0)
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, rows, GL_RGBA, GL_FLOAT, values.data());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, rows, GL_RGBA, type.type, values.data());
   if (rest > 0)
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, static_cast<GLsizei>(rest), 1, GL_RGBA, GL_FLOAT,
-                    values.data() + full_rows * static_cast<std::size_t>(width_));
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, static_cast<GLsizei>(rest), 1, GL_RGBA, type.type,
+                    values.data() + (count_ - rest) * element_bytes);
   check_errors("uploading a table");
 }
 

@@ -37,6 +37,10 @@ void delete_renderbuffer(unsigned int name);
 void delete_framebuffer(unsigned int name);
 void delete_vertex_array(unsigned int name);
 
+/// How numbers that shaders read as floats are stored; integers are normalised, shares of the
+/// greatest.
+enum class Scalar { float32, float16, unorm16, unorm8 };
+
 /// Immutable vertex or index data.
 class Buffer {
  public:
@@ -54,9 +58,9 @@ class Buffer {
 class VertexArray {
  public:
   VertexArray();
-  /// `component_count` floats for each vertex, `stride` and `offset` in bytes.
+  /// `component_count` numbers for each vertex, `stride` and `offset` in bytes.
   void set_floats(unsigned int location, const Buffer& buffer, int component_count,
-                  std::size_t stride, std::size_t offset);
+                  std::size_t stride, std::size_t offset, Scalar scalar = Scalar::float32);
   /// `component_count` of std::uint32_t for each vertex, tightly packed.
   void set_uints(unsigned int location, const Buffer& buffer, int component_count = 1);
   void set_indices(const Buffer& buffer);
@@ -80,22 +84,28 @@ class Texture {
   int height() const { return height_; }
 
  protected:
+  /// OpenGL's internal format, and the type of its components.
+  Texture(unsigned int format, unsigned int type, int width, int height, const void* pixels);
+
   Name<delete_texture> name_;
   int width_ = 0, height_ = 0;
 };
 
 /// A one-dimensional array of vec4 as large as textures can be: element i is texel (i % 2048,
-/// i / 2048) of an RGBA32F texture; table.glsl has the fetch.
+/// i / 2048) of a texture; table.glsl has the fetch.
 class Table : public Texture {
  public:
   Table() = default;
-  explicit Table(std::size_t count);
+  /// unorm16 only where Limits says so.
+  explicit Table(std::size_t count, Scalar scalar = Scalar::float32);
   /// All elements; the same number as at construction.
-  void upload(std::span<const Vec4> values);
+  void upload(std::span<const Vec4> values) { upload(std::as_bytes(values)); }
+  void upload(std::span<const std::byte> values);
   std::size_t count() const { return count_; }
 
  private:
   std::size_t count_ = 0;
+  Scalar scalar_ = Scalar::float32;
 };
 
 /// Layers of square images, filtered bilinearly within a layer, edges clamped: RGBA32F, or RGBA16F

@@ -133,6 +133,31 @@ TEST_P(EveryApi, PixelsAgreeWithTheCpuTwin) {
     expect_cpu_pixels(model, draw, light, render(model, draw, lighting_from(light)));
 }
 
+TEST_P(EveryApi, WeightsOfEveryFormatAgreeWithTheCpuTwin) {
+  const mesh::Scene scene = scene_of({torus(80, 40)});
+  const sh::Light light = test_light(3);
+  for (const auto format : {cpca::WeightFormat::float32, cpca::WeightFormat::float16,
+                            cpca::WeightFormat::unorm16, cpca::WeightFormat::unorm8})
+    for (const bool adaptive : {false, true}) {
+      const auto make = adaptive ? random_adaptive_transfer : random_transfer;
+      gltf::PrecomputedTransfer transfer =
+          with_superclusters(make(scene.vertex_count(), 3, 3, 300, 6, 1), 25);
+      cpca::Encoding& e = transfer.encoding;
+      for (float& value : e.means) value *= 0.1f;
+      // Every second component's weights are as small as half floats without a leading one.
+      const auto n = static_cast<std::size_t>(e.dimension);
+      for (std::size_t i = 0; i < e.weights.size(); i += 2)
+        e.weights[i] = std::ldexp(e.weights[i], -14);
+      for (std::size_t i = 0; i < e.bases.size(); ++i)
+        e.bases[i] *= i / n % 2 == 0 ? std::ldexp(0.1f, 14) : 0.1f;
+      cpca::convert_weights(format, e);
+      transfer.weight_format = format;
+      const Model model = make_model(scene, transfer, {});
+      for (const Draw draw : {Draw::single, Draw::clusters})
+        expect_cpu_pixels(model, draw, light, render(model, draw, lighting_from(light)));
+    }
+}
+
 TEST_P(EveryApi, BackgroundAgreesWithTheEnvironmentOnTheCpu) {
   image::Image map(16, 8, 3);
   Pcg32 random(5);
