@@ -6,7 +6,6 @@
 #include <array>
 #include <string_view>
 
-#include "core/error.h"
 #include "gltf/accessor.h"
 
 namespace prt::gltf {
@@ -26,28 +25,19 @@ constexpr const char* kArrays[] = {"accessors", "animations", "buffers", "buffer
 constexpr const char* kSupportedRequired[] = {"KHR_mesh_quantization", "KHR_texture_transform",
                                               "KHR_lights_punctual", "KHR_animation_pointer"};
 
-[[noreturn]] void reject(const Where& where, const std::string& what, const std::string& found = {},
-                         const std::string& expected = {}, const std::string& advice = {}) {
-  throw_bad_input(what, {.file = where.file,
-                         .element = where.element,
-                         .found = found,
-                         .expected = expected,
-                         .advice = advice});
-}
-
 void check_arrays(const State& state) {
   for (const char* name : kArrays) {
     const Json* array = find(state.root, name);
     if (!array) continue;
-    if (!array->is_array()) reject({state.file, name}, "not an array", array->type_name());
+    if (!array->is_array()) reject_at({state.file, name}, "not an array", array->type_name());
     for (std::size_t i = 0; i < array->size(); ++i) {
-      if (!(*array)[i].is_object()) reject({state.file, name}, "not an object");
+      if (!(*array)[i].is_object()) reject_at({state.file, name}, "not an object");
     }
   }
   const Where asset{state.file, "asset"};
   const Json* version = find(state.root, "asset");
   if (!version || !optional_string(*version, "version", asset).starts_with("2.")) {
-    reject(asset, "not glTF 2.0");
+    reject_at(asset, "not glTF 2.0");
   }
 }
 
@@ -55,9 +45,9 @@ void check_required_extensions(const State& state) {
   for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
     const Json& names = array_of(state.root, list);
     const Where where{state.file, list};
-    if (!names.is_array()) reject(where, "not an array");
+    if (!names.is_array()) reject_at(where, "not an array");
     for (const Json& name : names) {
-      if (!name.is_string()) reject(where, "not a string");
+      if (!name.is_string()) reject_at(where, "not a string");
     }
   }
   for (const Json& json : array_of(state.root, "extensionsRequired")) {
@@ -67,8 +57,8 @@ void check_required_extensions(const State& state) {
         std::find(std::begin(kSupportedRequired), std::end(kSupportedRequired), name) !=
             std::end(kSupportedRequired);
     if (!known) {
-      reject({state.file, "extensionsRequired"}, "unsupported extension", name, {},
-             "Export the file without it, or uncompressed.");
+      reject_at({state.file, "extensionsRequired"}, "unsupported extension", name, {},
+                "Export the file without it, or uncompressed.");
     }
   }
 }
@@ -83,11 +73,11 @@ void check_views(const State& state) {
     const std::size_t stride = optional_count(views[i], "byteStride", 4, where);
     const std::size_t available = state.buffers[buffer].size();
     if (offset > available || length > available - offset) {
-      reject(where, "runs past the end of its buffer", fmt::format("{} + {} bytes", offset, length),
-             fmt::format("at most {}", available));
+      reject_at(where, "runs past the end of its buffer",
+                fmt::format("{} + {} bytes", offset, length), fmt::format("at most {}", available));
     }
     if (stride < 4 || stride > 252 || stride % 4 != 0) {
-      reject(where, "bad stride", std::to_string(stride), "a multiple of 4 from 4 to 252");
+      reject_at(where, "bad stride", std::to_string(stride), "a multiple of 4 from 4 to 252");
     }
   }
 }
@@ -101,20 +91,20 @@ void check_range(const State& state, const Json& source, std::size_t count, std:
   const std::size_t offset = optional_count(source, "byteOffset", 0, where);
   const std::size_t length = view["byteLength"].get<std::size_t>();
   if (stride < size) {
-    reject(where, "elements larger than the stride of their view", std::to_string(size),
-           fmt::format("at most {} bytes", stride));
+    reject_at(where, "elements larger than the stride of their view", std::to_string(size),
+              fmt::format("at most {} bytes", stride));
   }
   // offset + (count - 1) stride + size <= length, without overflow
   const std::size_t available = offset > length ? 0 : length - offset;
   if (offset > length ||
       (count > 0 && (size > available || count - 1 > (available - size) / stride))) {
-    reject(where, "runs past the end of its buffer view",
-           fmt::format("{} elements from byte {}", count, offset),
-           fmt::format("a view of more than {} bytes", length));
+    reject_at(where, "runs past the end of its buffer view",
+              fmt::format("{} elements from byte {}", count, offset),
+              fmt::format("a view of more than {} bytes", length));
   }
   if ((offset + view.value("byteOffset", std::size_t{0})) % component != 0) {
-    reject(where, "not aligned to its components", fmt::format("offset {}", offset),
-           fmt::format("a multiple of {} bytes", component));
+    reject_at(where, "not aligned to its components", fmt::format("offset {}", offset),
+              fmt::format("a multiple of {} bytes", component));
   }
 }
 
@@ -124,22 +114,22 @@ void check_sparse(const State& state, const Json& accessor, std::size_t size, st
   if (!sparse) return;
   const std::size_t count = required_count(*sparse, "count", where);
   const Json *indices = find(*sparse, "indices"), *values = find(*sparse, "values");
-  if (!indices || !values) reject(where, "sparse without indices or values");
+  if (!indices || !values) reject_at(where, "sparse without indices or values");
   if (count > accessor["count"].get<std::size_t>()) {
-    reject(where, "more sparse elements than elements", std::to_string(count));
+    reject_at(where, "more sparse elements than elements", std::to_string(count));
   }
   // tinygltf has ints for these
   for (const std::size_t number : {count, optional_count(*indices, "byteOffset", 0, where),
                                    optional_count(*values, "byteOffset", 0, where)}) {
     if (number > std::numeric_limits<int>::max()) {
-      reject(where, "sparse data too large", std::to_string(number));
+      reject_at(where, "sparse data too large", std::to_string(number));
     }
   }
   const std::size_t type = required_count(*indices, "componentType", where);
   if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
       type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-    reject(where, "bad type of sparse indices", std::to_string(type));
+    reject_at(where, "bad type of sparse indices", std::to_string(type));
   }
   check_range(state, *indices, count, component_bytes(type), component_bytes(type), where);
   check_range(state, *values, count, size, component, where);
@@ -155,15 +145,15 @@ void check_accessors(const State& state) {
     const std::size_t component_type = required_count(accessor, "componentType", where);
     const std::size_t component = component_bytes(component_type);
     const std::string type = optional_string(accessor, "type", where);
-    if (component == 0) reject(where, "unknown component type");
-    if (type_code(type) < 0) reject(where, "unknown type", type);
+    if (component == 0) reject_at(where, "unknown component type");
+    if (type_code(type) < 0) reject_at(where, "unknown type", type);
     optional_bool(accessor, "normalized", where);
     const std::size_t size = element_bytes(static_cast<int>(component_type), type_code(type));
     if (accessor.contains("bufferView")) {
       check_range(state, accessor, count, size, component, where);
     } else if (count > kMaxZeroCount || (zero_bytes += count * size) > kMaxZeroBytes) {
-      reject(where, "too many elements without data", std::to_string(count),
-             fmt::format("at most {}, and {} bytes in all", kMaxZeroCount, kMaxZeroBytes));
+      reject_at(where, "too many elements without data", std::to_string(count),
+                fmt::format("at most {}, and {} bytes in all", kMaxZeroCount, kMaxZeroBytes));
     }
     check_sparse(state, accessor, size, component, where);
   }
@@ -176,28 +166,29 @@ std::size_t accessor_count(const State& state, std::size_t accessor) {
 
 void check_attributes(const State& state, const Json& attributes, std::optional<std::size_t> count,
                       const Where& where) {
-  if (!attributes.is_object()) reject(where, "attributes are no object");
+  if (!attributes.is_object()) reject_at(where, "attributes are no object");
   for (const auto& [name, value] : attributes.items()) {
     const std::size_t accessor =
         required_index(attributes, name.c_str(), state.count("accessors"), where);
     if (!count) count = accessor_count(state, accessor);
     if (accessor_count(state, accessor) != *count) {
-      reject(where, "attributes of different length", name, std::to_string(*count) + " elements");
+      reject_at(where, "attributes of different length", name,
+                std::to_string(*count) + " elements");
     }
   }
 }
 
 void check_primitive(const State& state, const Json& primitive, const Where& where) {
-  if (!primitive.is_object()) reject(where, "not an object");
+  if (!primitive.is_object()) reject_at(where, "not an object");
   const Json* attributes = find(primitive, "attributes");
-  if (!attributes || !attributes->is_object()) reject(where, "no attributes");
-  if (!attributes->contains("POSITION")) reject(where, "no positions");
+  if (!attributes || !attributes->is_object()) reject_at(where, "no attributes");
+  if (!attributes->contains("POSITION")) reject_at(where, "no positions");
   check_attributes(state, *attributes, std::nullopt, where);
   optional_index(primitive, "indices", state.count("accessors"), where);
   optional_index(primitive, "material", state.count("materials"), where);
   optional_index(primitive, "mode", 7, where);
   const Json& targets = array_of(primitive, "targets");
-  if (!targets.is_array()) reject(where, "targets are no array");
+  if (!targets.is_array()) reject_at(where, "targets are no array");
   const std::size_t count = accessor_count(state, (*attributes)["POSITION"].get<std::size_t>());
   for (const Json& target : targets) check_attributes(state, target, count, where);
 }
@@ -207,7 +198,7 @@ void check_meshes(const State& state) {
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const Json* primitives = find(meshes[m], "primitives");
     const Where where = state.where("mesh", m);
-    if (!primitives || !primitives->is_array()) reject(where, "no primitives");
+    if (!primitives || !primitives->is_array()) reject_at(where, "no primitives");
     for (std::size_t p = 0; p < primitives->size(); ++p) {
       check_primitive(state, (*primitives)[p],
                       {state.file, fmt::format("mesh {}: primitive {}", m, p)});

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "gltf/check.h"
 
 namespace prt::gltf {
@@ -20,10 +19,8 @@ std::vector<std::size_t> read_nodes(const State& state, const Json& object, cons
     return node.is_number_unsigned() && node.get<std::size_t>() < count;
   };
   if (!array->is_array() || !std::all_of(array->begin(), array->end(), valid)) {
-    throw_bad_input(fmt::format("bad \"{}\"", key),
-                    {.file = where.file,
-                     .element = where.element,
-                     .expected = fmt::format("an array of numbers less than {}", count)});
+    reject_at(where, fmt::format("bad \"{}\"", key), {},
+              fmt::format("an array of numbers less than {}", count));
   }
   for (const Json& node : *array) nodes.push_back(node.get<std::size_t>());
   return nodes;
@@ -44,10 +41,8 @@ void check_nodes(const State& state) {
     check_numbers(node, "translation", 3, where);
     for (const std::size_t child : read_nodes(state, node, "children", where)) {
       if (parent[child] != kNone) {
-        throw_bad_input("a node with two parents",
-                        {.file = state.file,
-                         .element = fmt::format("node {}", child),
-                         .found = fmt::format("nodes {} and {}", parent[child], i)});
+        reject_at(state.where("node", child), "a node with two parents",
+                  fmt::format("nodes {} and {}", parent[child], i));
       }
       parent[child] = i;
     }
@@ -57,11 +52,9 @@ void check_nodes(const State& state) {
     std::size_t depth = 0;
     for (std::size_t node = i; parent[node] != kNone; node = parent[node]) {
       if (++depth > state.limits.max_node_depth) {
-        throw_bad_input("node cycle, or nodes nested too deeply",
-                        {.file = state.file,
-                         .element = fmt::format("node {}", i),
-                         .expected = fmt::format("at most {} ancestors and none of them itself",
-                                                 state.limits.max_node_depth)});
+        reject_at(state.where("node", i), "node cycle, or nodes nested too deeply", {},
+                  fmt::format("at most {} ancestors and none of them itself",
+                              state.limits.max_node_depth));
       }
     }
   }
@@ -70,9 +63,8 @@ void check_nodes(const State& state) {
     const Where where = state.where("scene", i);
     for (const std::size_t node : read_nodes(state, state.element("scenes", i), "nodes", where)) {
       if (listed[node] || parent[node] != kNone) {
-        throw_bad_input(
-            "a node that the scene shows twice, or that has a parent",
-            {.file = state.file, .element = where.element, .found = fmt::format("node {}", node)});
+        reject_at(where, "a node that the scene shows twice, or that has a parent",
+                  fmt::format("node {}", node));
       }
       listed[node] = true;
     }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "core/checked.h"
-#include "core/error.h"
 #include "gltf/accessor.h"
 #include "gltf/check.h"
 
@@ -14,10 +13,7 @@ constexpr std::size_t kMaxCopiedJson = std::size_t{1} << 26;
 
 [[noreturn]] void reject_size(const Where& where, const std::string& what, const std::string& found,
                               std::size_t most) {
-  throw_bad_input(what, {.file = where.file,
-                         .element = where.element,
-                         .found = found,
-                         .expected = fmt::format("at most {}", most)});
+  reject_at(where, what, found, fmt::format("at most {}", most));
 }
 
 // Nodes may share a mesh: importing gives each its own. Counted before anything is listed or

@@ -126,10 +126,8 @@ class Fetcher {
 
  private:
   [[noreturn]] void reject(const Where& where) const {
-    throw_bad_input("buffers and images are too large",
-                    {.file = where.file,
-                     .element = where.element,
-                     .expected = fmt::format("{} bytes in all", state_.limits.max_file_bytes)});
+    reject_at(where, "buffers and images are too large", {},
+              fmt::format("{} bytes in all", state_.limits.max_file_bytes));
   }
 
   const State& state_;

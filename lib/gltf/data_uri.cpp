@@ -1,6 +1,5 @@
 #include <array>
 
-#include "core/error.h"
 #include "gltf/container.h"
 
 namespace prt::gltf {
@@ -25,7 +24,7 @@ Bytes decode_base64(std::string_view text, const Where& where) {
   for (const char c : text) {
     const int digit = base64_digit(c);
     if (digit < 0) {
-      throw_bad_input("bad base64 in a data URI", {.file = where.file, .element = where.element});
+      reject_at(where, "bad base64 in a data URI");
     }
     buffer = (buffer << 6) | static_cast<unsigned>(digit);
     bits += 6;
@@ -42,8 +41,7 @@ Bytes decode_base64(std::string_view text, const Where& where) {
 Bytes decode_data_uri(std::string_view uri, const Where& where) {
   const std::size_t comma = uri.find(',');
   if (comma == uri.npos || !uri.substr(0, comma).ends_with(";base64")) {
-    throw_bad_input("a data URI that is not base64",
-                    {.file = where.file, .element = where.element});
+    reject_at(where, "a data URI that is not base64");
   }
   return decode_base64(uri.substr(comma + 1), where);
 }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/error.h"
 #include "gltf/accessor.h"
 
 namespace prt::gltf {
@@ -22,11 +21,8 @@ std::vector<Vec> read_vectors(const Model& model, const tinygltf::Primitive& pri
   const std::size_t components = component_count(accessor);
   const bool color_without_alpha = std::string_view(name) == "COLOR_0" && components == 3;
   if (components != Vec::dimensions() && !color_without_alpha) {
-    throw_bad_input(fmt::format("{} of a wrong type", name),
-                    {.file = where.file,
-                     .element = where.element,
-                     .found = fmt::format("{} components", components),
-                     .expected = fmt::format("{}", Vec::dimensions())});
+    reject_at(where, fmt::format("{} of a wrong type", name),
+              fmt::format("{} components", components), fmt::format("{}", Vec::dimensions()));
   }
   const std::vector<float> values = read_floats(model, found->second);
   vectors.assign(accessor.count, Vec(1.0f));
@@ -47,11 +43,9 @@ std::vector<std::uint32_t> read_corners(const Model& model, const tinygltf::Prim
   }
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (corners[i] < vertex_count) continue;
-    throw_bad_input("index past the last vertex",
-                    {.file = where.file,
-                     .element = fmt::format("{}: index {}", where.element, i),
-                     .found = std::to_string(corners[i]),
-                     .expected = fmt::format("less than {}", vertex_count)});
+    reject_at({where.file, fmt::format("{}: index {}", where.element, i)},
+              "index past the last vertex", std::to_string(corners[i]),
+              fmt::format("less than {}", vertex_count));
   }
   return corners;
 }
@@ -93,7 +87,7 @@ mesh::TriangleMesh read_geometry(const Model& model, const tinygltf::Primitive& 
   mesh.texcoords = read_vectors<Vec2>(model, primitive, "TEXCOORD_0", where);
   mesh.colors = read_vectors<Vec4>(model, primitive, "COLOR_0", where);
   if (mesh.positions.empty()) {
-    throw_bad_input("no positions", {.file = where.file, .element = where.element});
+    reject_at(where, "no positions");
   }
   mesh.indices =
       triangulate(read_corners(model, primitive, mesh.vertex_count(), where), primitive.mode);
@@ -103,9 +97,7 @@ mesh::TriangleMesh read_geometry(const Model& model, const tinygltf::Primitive& 
 void check_transform(const Matrix4& world_from_local, const mesh::TriangleMesh& mesh,
                      const Where& where) {
   const auto reject = [&](const char* what) {
-    throw_bad_input(what, {.file = where.file,
-                           .element = where.element,
-                           .advice = "Mend or remove the nodes that show it."});
+    reject_at(where, what, {}, {}, "Mend or remove the nodes that show it.");
   };
   const double determinant = Imath::M44d(world_from_local).determinant();
   if (determinant == 0.0 || !std::isfinite(determinant)) {

@@ -12,12 +12,19 @@ namespace {
 
 [[noreturn]] void reject(const char* key, const Where& where, const std::string& found,
                          const std::string& expected) {
-  throw_bad_input(
-      fmt::format("bad \"{}\"", key),
-      {.file = where.file, .element = where.element, .found = found, .expected = expected});
+  reject_at(where, fmt::format("bad \"{}\"", key), found, expected);
 }
 
 }  // namespace
+
+void reject_at(const Where& where, const std::string& what, const std::string& found,
+               const std::string& expected, const std::string& advice) {
+  throw_bad_input(what, {.file = where.file,
+                         .element = where.element,
+                         .found = found,
+                         .expected = expected,
+                         .advice = advice});
+}
 
 const Json* find(const Json& object, const char* key) {
   if (!object.is_object()) return nullptr;

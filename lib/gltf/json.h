@@ -17,6 +17,11 @@ struct Where {
   std::string element;
 };
 
+/// Throws Error (bad_input) that names the place; what is empty is left out.
+[[noreturn]] void reject_at(const Where& where, const std::string& what,
+                            const std::string& found = {}, const std::string& expected = {},
+                            const std::string& advice = {});
+
 /// All throw Error (bad_input) when the field has another type or, in required_…, is missing.
 const Json* find(const Json& object, const char* key);
 std::size_t required_count(const Json& object, const char* key, const Where& where);

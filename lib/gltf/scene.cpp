@@ -204,9 +204,7 @@ bool has_unit_normals(const mesh::TriangleMesh& mesh) {
 void check_ready(const tinygltf::Primitive& primitive, const mesh::TriangleMesh& mesh,
                  const Where& where) {
   const auto reject = [&](const char* what) {
-    throw_bad_input(what, {.file = where.file,
-                           .element = where.element,
-                           .advice = "Pass the file through prt-import first."});
+    reject_at(where, what, {}, {}, "Pass the file through prt-import first.");
   };
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES) reject("a strip or fan of triangles");
   if (primitive.indices < 0) reject("triangles without indices");
@@ -248,8 +246,7 @@ mesh::Scene Document::scene() const {
     check_transform(use.world_from_local, primitive.mesh, where);
     move_to_world(primitive.mesh, use.world_from_local);
     if (!has_unit_normals(primitive.mesh)) {
-      throw_bad_input("a transform that leaves a normal without direction",
-                      {.file = where.file, .element = where.element});
+      reject_at(where, "a transform that leaves a normal without direction");
     }
     primitive.material = from.material;
     primitive.mesh_index = static_cast<int>(use.mesh);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/checked.h"
-#include "core/error.h"
 #include "gltf/accessor.h"
 
 namespace prt::gltf {
@@ -19,11 +18,7 @@ constexpr std::size_t kMaxPaddedSize = std::size_t{1} << 28;
 
 void reject_transfer(const Where& where, const std::string& what, const std::string& found,
                      const std::string& expected) {
-  throw_bad_input(what, {.file = where.file,
-                         .element = where.element,
-                         .found = found,
-                         .expected = expected,
-                         .advice = "Bake the file again."});
+  reject_at(where, what, found, expected, "Bake the file again.");
 }
 
 int read_limited(const tinygltf::Value& object, const char* key, int least, int most,

@@ -177,8 +177,7 @@ std::size_t vertex_count(const Model& model, const PrimitiveUse& use) {
   const auto& attributes = primitive_of(model, use).attributes;
   const auto positions = attributes.find("POSITION");
   if (positions != attributes.end()) return accessor_of(model, positions->second).count;
-  const Where where = where_of(model, use);
-  throw_bad_input("no positions", {.file = where.file, .element = where.element});
+  reject_at(where_of(model, use), "no positions");
 }
 
 }  // namespace
