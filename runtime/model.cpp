@@ -7,12 +7,12 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/exit_rows.h"
 #include "core/log.h"
 #include "gltf/document.h"
 #include "mesh/frame.h"
 #include "runtime/triangle_order.h"
 #include "sh/basis.h"
-#include "sh/hemisphere.h"
 #include "sh/radiance_metric.h"
 
 namespace prt::runtime {
@@ -24,14 +24,9 @@ void check_transfer(std::size_t vertex_count, std::size_t found_vertex_count, in
     throw_bad_input(
         "the transfer has another number of vertices than the model",
         {.found = std::to_string(found_vertex_count), .expected = std::to_string(vertex_count)});
-  if (row_count == 1) return;
-  try {
-    sh::hemisphere_functions(row_count);
-  } catch (const Error&) {
+  if (!is_exit_row_count(row_count))
     throw_bad_input("the transfer's exit rows are no set of hemispherical functions",
-                    {.found = std::to_string(row_count) + " rows",
-                     .expected = "1, or n² or n² - 1 for n bands"});
-  }
+                    {.found = std::to_string(row_count) + " rows", .expected = kExitRowCounts});
 }
 
 void check_alike(const gltf::PrecomputedTransfer& transfer, const signal::TransferSignal& signal) {

@@ -14,8 +14,7 @@ namespace prt::gltf {
 constexpr const char* kTransferExtension = "PRTKIT_precomputed_transfer";
 
 /// What the extension has room for.
-constexpr int kMaxBandCount = 16, kMaxRowCount = 256, kMaxClusterCount = 65536,
-              kMaxComponentCount = 256;
+constexpr int kMaxBandCount = 16, kMaxClusterCount = 65536, kMaxComponentCount = 256;
 
 /// Compressed transfer of all vertices of a file's scene, numbered through as in mesh::Scene. A
 /// vector of the encoding is ordered [channel][exit row][source coefficient].

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/exit_rows.h"
 #include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/transfer_format.h"
@@ -74,9 +75,9 @@ PrecomputedTransfer read_header(const Model& model, const tinygltf::Value& heade
   const int conventions =
       read_limited(header, "conventions", kFirstConventions, kLastConventions, where);
   transfer.band_count = read_limited(header, "bandCount", 1, kMaxBandCount, where);
-  transfer.row_count = read_limited(header, "rowCount", 1, kMaxRowCount, where);
-  if (!is_row_count(transfer.row_count)) {
-    reject_transfer(where, "rowCount", std::to_string(transfer.row_count), "1, or n² or n² - 1");
+  transfer.row_count = read_limited(header, "rowCount", 1, kMaxExitRowCount, where);
+  if (!is_exit_row_count(transfer.row_count)) {
+    reject_transfer(where, "rowCount", std::to_string(transfer.row_count), kExitRowCounts);
   }
   transfer.channel_count = read_limited(header, "channelCount", 1, 3, where);
   if (transfer.channel_count == 2) reject_transfer(where, "channelCount", "2", "1 or 3");

@@ -41,13 +41,6 @@ inline int component_type_of(cpca::WeightFormat format) {
                                                 : TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
 }
 
-/// Exit rows that the conventions define: 1, and n² or n² - 1 for n bands.
-inline bool is_row_count(int count) {
-  int band_count = 1;
-  while (band_count * band_count < count) ++band_count;
-  return count >= 1 && count <= kMaxRowCount && count >= band_count * band_count - 1;
-}
-
 /// Vectors of all clusters.
 inline std::size_t vector_count(const cpca::Encoding& encoding) {
   return encoding.component_counts.empty()

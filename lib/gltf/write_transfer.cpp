@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/exit_rows.h"
 #include "gltf/accessor.h"
 #include "gltf/transfer_format.h"
 
@@ -108,10 +109,10 @@ void check_limits(const PrecomputedTransfer& transfer) {
                   .expected = fmt::format("{} to {}", least, most),
                   .advice = fmt::format("Use fewer {}.", what)});
   }
-  if (!is_row_count(transfer.row_count)) {
+  if (!is_exit_row_count(transfer.row_count)) {
     throw_failed("number of rows that the extension does not have",
                  {.found = std::to_string(transfer.row_count),
-                  .expected = fmt::format("1, or n² or n² - 1 up to {}", kMaxRowCount)});
+                  .expected = fmt::format("{} up to {}", kExitRowCounts, kMaxExitRowCount)});
   }
   if (transfer.channel_count != 1 && transfer.channel_count != 3) {
     throw_failed("number of channels that the extension does not have",

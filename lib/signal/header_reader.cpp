@@ -13,6 +13,7 @@
 
 #include "core/checked.h"
 #include "core/error.h"
+#include "core/exit_rows.h"
 
 namespace prt::signal {
 
@@ -95,7 +96,10 @@ void HeaderReader::read_attributes(TransferSignal& signal) const {
   constexpr int kMaxInt = std::numeric_limits<int>::max();
   int_attribute("prtkit_version", kFormatVersion, kFormatVersion);
   signal.band_count = int_attribute("prtkit_band_count", 1, kMaxBandCount);
-  signal.row_count = int_attribute("prtkit_row_count", 1, kMaxRowCount);
+  signal.row_count = int_attribute("prtkit_row_count", 1, kMaxExitRowCount);
+  if (!is_exit_row_count(signal.row_count)) {
+    reject("attribute prtkit_row_count", std::to_string(signal.row_count), kExitRowCounts);
+  }
   signal.channel_count = int_attribute("prtkit_channel_count", 1, 3);
   if (signal.channel_count == 2) reject("attribute prtkit_channel_count", "2", "1 or 3");
   // Within these ranges the product fits an int.

@@ -19,9 +19,8 @@ constexpr int kFormatVersion = 1;
 /// the most that is read: it bounds the memory that a strip takes.
 constexpr std::size_t kFileWidth = 256;
 
-/// What a file may not exceed; bands and rows as sh::kMaxBandCount has it.
+/// What a file may not exceed; bands as sh::kMaxBandCount has it.
 constexpr int kMaxBandCount = 16;
-constexpr int kMaxRowCount = 256;
 constexpr std::size_t kMaxVertexCount = std::size_t{1} << 31;
 
 /// Scanlines that go through memory together.

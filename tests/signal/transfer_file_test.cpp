@@ -110,13 +110,13 @@ void write_stranger(const fs::path& path, const std::function<void(Imf::Header&)
 
 TEST_F(TransferFile, RoundTripsBitForBit) {
   for (const auto& counts : {std::vector<std::size_t>{1}, {256}, {257, 3, 1000}, {5000}}) {
-    TransferSignal signal = make_signal(3, 2, 3, counts);
+    TransferSignal signal = make_signal(3, 3, 3, counts);
     signal.values.front() = -0.0f;
     signal.values.back() = std::numeric_limits<float>::denorm_min();
     write_transfer(path(), signal);
     const TransferSignal read = read_transfer(path());
     EXPECT_EQ(read.band_count, 3);
-    EXPECT_EQ(read.row_count, 2);
+    EXPECT_EQ(read.row_count, 3);
     EXPECT_EQ(read.channel_count, 3);
     EXPECT_EQ(read.brdf, "lambert");
     EXPECT_EQ(read.seed, signal.seed);
@@ -294,6 +294,11 @@ TEST_F(TransferFile, RefusesHeadersThatDoNotFit) {
        "channels: not a transfer file of prtkit: found 1, expected 4"},
       {set_int("prtkit_row_count", -1), "prtkit_row_count"},
       {set_int("prtkit_row_count", 257), "found 257, expected 1 to 256"},
+      {set_int("prtkit_row_count", 2), "found 2, expected 1, or n² or n² - 1"},
+      {set_int("prtkit_row_count", 5), "found 5, expected 1, or n² or n² - 1"},
+      {set_int("prtkit_row_count", 14), "found 14, expected 1, or n² or n² - 1"},
+      {set_int("prtkit_row_count", 15),
+       "channels: not a transfer file of prtkit: found 1, expected 15"},
       {set_int("prtkit_channel_count", 2), "prtkit_channel_count"},
       {set_int("prtkit_bounce_count", -1), "prtkit_bounce_count"},
       {[](Header& header) { header.insert("prtkit_seed", Imf::StringAttribute("-1")); },
