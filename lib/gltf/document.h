@@ -33,7 +33,7 @@ class Document {
                         const Limits& limits = {});
 
   /// A new document with one node and mesh for each primitive of the scene. Of its material, the
-  /// texture stays only if it has texture coordinates.
+  /// texture stays only if it has texture coordinates. Images that nothing shows are left out.
   static Document from_scene(const mesh::Scene& scene);
 
   Document(Document&&) noexcept;

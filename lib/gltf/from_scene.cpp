@@ -19,10 +19,19 @@ int wrap_code(mesh::Wrap wrap) {
   }
 }
 
-void add_images(State& state, const mesh::Scene& scene) {
-  for (const image::Image& image : scene.images) {
-    const std::size_t view = add_view(state, encode_png(image));
-    make_array(state.root, "images").push_back({{"mimeType", "image/png"}, {"bufferView", view}});
+// Those that materials refer to, which get their new numbers.
+void add_images(State& state, const mesh::Scene& scene, std::vector<mesh::Material>& materials) {
+  std::vector<int> numbers(scene.images.size(), -1);
+  for (mesh::Material& material : materials) {
+    if (material.base_color_image < 0) continue;
+    const auto image = static_cast<std::size_t>(material.base_color_image);
+    if (numbers[image] < 0) {
+      const std::size_t view = add_view(state, encode_png(scene.images[image]));
+      Json& images = make_array(state.root, "images");
+      numbers[image] = static_cast<int>(images.size());
+      images.push_back({{"mimeType", "image/png"}, {"bufferView", view}});
+    }
+    material.base_color_image = numbers[image];
   }
 }
 
@@ -47,14 +56,31 @@ Json make_material(State& state, const mesh::Material& material) {
   return json;
 }
 
-// The primitive's; without texture coordinates, one more without the texture, which would need
-// them.
-int material_of(const mesh::Primitive& primitive, std::vector<mesh::Material>& materials) {
+// The scene's, with the textures that a primitive with texture coordinates shows.
+std::vector<mesh::Material> materials_of(const mesh::Scene& scene) {
+  std::vector<bool> shown(scene.materials.size());
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    if (primitive.material < 0 || primitive.mesh.texcoords.empty()) continue;
+    shown[static_cast<std::size_t>(primitive.material)] = true;
+  }
+  std::vector<mesh::Material> materials = scene.materials;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (!shown[i]) materials[i].base_color_image = -1;
+  }
+  return materials;
+}
+
+// The primitive's; without texture coordinates, which the texture would need, one more where
+// others show it.
+int material_of(const mesh::Primitive& primitive, const mesh::Scene& scene,
+                std::vector<mesh::Material>& materials) {
   if (primitive.material < 0 || !primitive.mesh.texcoords.empty()) return primitive.material;
-  mesh::Material plain = materials[static_cast<std::size_t>(primitive.material)];
-  if (plain.base_color_image < 0) return primitive.material;
+  const auto number = static_cast<std::size_t>(primitive.material);
+  if (scene.materials[number].base_color_image < 0) return primitive.material;
   log::warning("mesh {}: not all corners have texture coordinates, texture dropped",
                primitive.name);
+  if (materials[number].base_color_image < 0) return primitive.material;
+  mesh::Material plain = materials[number];
   plain.base_color_image = -1;
   materials.push_back(std::move(plain));
   return static_cast<int>(materials.size()) - 1;
@@ -83,11 +109,11 @@ Document Document::from_scene(const mesh::Scene& scene) {
   state->root["asset"]["version"] = "2.0";
   state->root["scene"] = 0;
   state->root["scenes"][0]["nodes"] = Json::array();
-  std::vector<mesh::Material> materials = scene.materials;
+  std::vector<mesh::Material> materials = materials_of(scene);
   for (const mesh::Primitive& primitive : scene.primitives) {
-    add_primitive(*state, primitive, material_of(primitive, materials));
+    add_primitive(*state, primitive, material_of(primitive, scene, materials));
   }
-  add_images(*state, scene);
+  add_images(*state, scene, materials);
   for (const mesh::Material& material : materials) {
     Json json = make_material(*state, material);
     make_array(state->root, "materials").push_back(std::move(json));

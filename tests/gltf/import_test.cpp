@@ -226,6 +226,34 @@ TEST_F(GltfImport, DropsTheTextureWhereTextureCoordinatesAreMissing) {
   EXPECT_TRUE(has_texture(1));
 }
 
+TEST_F(GltfImport, StoresOnlyTheImagesThatAreShown) {
+  for (const char* name : {"a.png", "b.png", "c.png"}) {
+    image::Image image(2, 2, 3);
+    image.pixels[0] = name[0] == 'b' ? 1.0f : 0.0f;
+    image::write_image(folder_ / name, image);
+  }
+  folder_.write("a.mtl",
+                "newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\nnewmtl unused\nmap_Kd c.png\n");
+  const std::string vertices =
+      "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1 2 3\n";
+  const auto imported = [&](const std::string& text) {
+    const Document document = import_file(folder_.write("a.obj", vertices + text), {}).document;
+    const auto bytes = document.glb_bytes();
+    const std::string content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const mesh::Scene scene = document.scene();
+    EXPECT_EQ(content.find("image/png") == content.npos, scene.images.empty());
+    EXPECT_EQ(content.find("\x89PNG") == content.npos, scene.images.empty());
+    EXPECT_EQ(scene.materials.size(), 3u);
+    return scene;
+  };
+  EXPECT_TRUE(imported("").images.empty());
+  const mesh::Scene scene = imported("usemtl b\nf 3/1 2/1 1/1\n");
+  ASSERT_EQ(scene.images.size(), 1u);
+  EXPECT_EQ(scene.images[0].pixels[0], 1.0f);
+  EXPECT_EQ(scene.materials[0].base_color_image, -1);
+  EXPECT_EQ(scene.materials[1].base_color_image, 0);
+}
+
 TEST_F(GltfImport, ColoursOnlyWhatHasNoMaterial) {
   folder_.write("a.mtl", "newmtl red\nKd 1 0 0\n");
   const auto path = folder_.write("a.obj",
