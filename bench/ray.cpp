@@ -4,25 +4,22 @@
 //
 //   bench_ray [model.obj] [rays per vertex]
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
-#include <pmmintrin.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
-#include <cstring>
-#include <ctime>
 #include <functional>
-#include <numeric>
 #include <string>
 #include <vector>
 
+#include "bare_embree.h"
 #include "core/parallel.h"
 #include "mesh/mesh_file.h"
 #include "mesh/normals.h"
 #include "ray/engine.h"
 #include "ray/shadow_tree.h"
+#include "ray_rate.h"
 #include "transfer/diffuse.h"
 #include "transfer/directions.h"
 #include "transfer/spatial_order.h"
@@ -30,11 +27,15 @@
 namespace {
 
 using namespace prt;
+using bench::BareEmbree;
+using bench::cpu_seconds;
+using bench::kRaysPerTask;
+using bench::measure;
+using bench::Rate;
 using ray::Ray;
 
 constexpr std::size_t kVertexBlock = 64;  // as in lib/transfer
 constexpr std::size_t kBlockStride = 64;  // every 64th block of vertices is traced
-constexpr std::size_t kRaysPerTask = 1 << 14;
 constexpr int kPasses = 3;
 
 /// The first part of a model, with smooth normals.
@@ -71,138 +72,6 @@ std::vector<Ray> make_rays(const std::vector<Origin>& origins,
     }
   }
   return rays;
-}
-
-/// Processor time of all threads of this process: other programs do not disturb it as they do the
-/// clock on the wall.
-double cpu_seconds() {
-  timespec time;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// Million rays a second, by processor time and the number of threads, of one pass over all
-/// rays, and what it counted as blocked.
-struct Rate {
-  double mrays = 0.0;
-  std::size_t blocked = 0;
-};
-
-Rate measure(std::size_t count, std::size_t task_size,
-             const std::function<std::size_t(std::size_t begin, std::size_t end)>& trace) {
-  std::vector<std::size_t> blocked(block_count(count, task_size));
-  const double start = cpu_seconds();
-  parallel_for(count, task_size, [&](std::size_t begin, std::size_t end) {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-    blocked[begin / task_size] = trace(begin, end);
-  });
-  const double seconds = (cpu_seconds() - start) / thread_count();
-  return {static_cast<double>(count) / seconds * 1e-6,
-          std::accumulate(blocked.begin(), blocked.end(), std::size_t{0})};
-}
-
-RTCIntersectContext make_context(bool coherent) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  return context;
-}
-
-/// Bare Embree with rays in its own layouts, made before the clock starts.
-class BareEmbree {
- public:
-  BareEmbree(const mesh::TriangleMesh& mesh, bool robust, RTCBuildQuality quality)
-      : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(scene_, quality);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                        sizeof(Vec3), mesh.positions.size()),
-                mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
-    std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                        mesh.triangle_count()),
-                mesh.indices.data(), mesh.indices.size() * 4);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  ~BareEmbree() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  BareEmbree(const BareEmbree&) = delete;
-  BareEmbree& operator=(const BareEmbree&) = delete;
-
-  Rate single(const std::vector<RTCRay>& rays, bool coherent) const {
-    return measure(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
-      RTCIntersectContext context = make_context(coherent);
-      std::size_t blocked = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        RTCRay ray = rays[i];
-        rtcOccluded1(scene_, &context, &ray);
-        blocked += ray.tfar < 0.0f;
-      }
-      return blocked;
-    });
-  }
-
-  Rate stream(const std::vector<RTCRay>& rays, bool coherent) const {
-    return measure(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
-      constexpr std::size_t kStream = 64;
-      RTCIntersectContext context = make_context(coherent);
-      RTCRay batch[kStream];
-      std::size_t blocked = 0;
-      for (std::size_t i = begin; i < end; i += kStream) {
-        const std::size_t count = std::min(kStream, end - i);
-        std::copy_n(&rays[i], count, batch);
-        rtcOccluded1M(scene_, &context, batch, static_cast<unsigned>(count), sizeof(RTCRay));
-        for (std::size_t k = 0; k < count; ++k) blocked += batch[k].tfar < 0.0f;
-      }
-      return blocked;
-    });
-  }
-
-  template <class Packet, std::size_t kWidth, class Call>
-  Rate packets(const std::vector<RTCRay>& rays, bool coherent, const Call& call) const {
-    std::vector<Packet> packed(rays.size() / kWidth);
-    for (std::size_t i = 0; i < packed.size() * kWidth; ++i) {
-      const RTCRay& ray = rays[i];
-      Packet& packet = packed[i / kWidth];
-      const std::size_t k = i % kWidth;
-      packet.org_x[k] = ray.org_x, packet.org_y[k] = ray.org_y, packet.org_z[k] = ray.org_z;
-      packet.dir_x[k] = ray.dir_x, packet.dir_y[k] = ray.dir_y, packet.dir_z[k] = ray.dir_z;
-      packet.tnear[k] = ray.tnear, packet.tfar[k] = ray.tfar, packet.time[k] = 0.0f;
-      packet.mask[k] = ray.mask, packet.id[k] = 0, packet.flags[k] = 0;
-    }
-    return measure(packed.size() * kWidth, kRaysPerTask, [&](std::size_t begin, std::size_t end) {
-      RTCIntersectContext context = make_context(coherent);
-      alignas(64) int valid[kWidth];
-      std::fill_n(valid, kWidth, -1);
-      std::size_t blocked = 0;
-      for (std::size_t i = begin / kWidth; i < end / kWidth; ++i) {
-        Packet packet = packed[i];
-        call(valid, scene_, &context, &packet);
-        for (std::size_t k = 0; k < kWidth; ++k) blocked += packet.tfar[k] < 0.0f;
-      }
-      return blocked;
-    });
-  }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_;
-};
-
-std::vector<RTCRay> embree_rays(const std::vector<Ray>& rays) {
-  std::vector<RTCRay> result;
-  for (const Ray& ray : rays) {
-    const Vec3 &o = ray.origin, &d = ray.direction;
-    result.push_back(
-        {o.x, o.y, o.z, ray.t_near, d.x, d.y, d.z, 0.0f, ray.t_far, 0xffffffffu, 0, 0});
-  }
-  return result;
 }
 
 Rate measure_engine(const ray::Engine& engine, const std::vector<Ray>& rays) {
@@ -294,7 +163,7 @@ int main(int argc, char** argv) {
       transfer::make_directions(2 * static_cast<std::size_t>(ray_count), 1);
   const std::vector<Origin> origins = make_origins(mesh);
   const std::vector<Ray> rays = make_rays(origins, directions);
-  const std::vector<RTCRay> bare = embree_rays(rays);
+  const std::vector<RTCRay> bare = bench::embree_rays(rays);
   const auto engine = ray::make_embree_engine({mesh.positions, mesh.indices});
   const ray::ShadowTree tree({mesh.positions, mesh.indices});
   const BareEmbree robust(mesh, true, RTC_BUILD_QUALITY_MEDIUM);
