@@ -135,10 +135,6 @@ template <class T>
   }
 }
 
-using Kernel = void(const float* points, std::size_t count, std::size_t dimension,
-                    const float* panels, const float* biases, std::size_t panel_count,
-                    std::uint32_t* labels);
-
 [[gnu::target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]] void classify_avx512(
     const float* points, std::size_t count, std::size_t dimension, const float* panels,
     const float* biases, std::size_t panel_count, std::uint32_t* labels) {
@@ -193,11 +189,9 @@ NearestMean::NearestMean(std::span<const float> means, std::span<const float> or
 
 void NearestMean::classify(std::span<const float> signal, std::size_t begin, std::size_t end,
                            std::span<std::uint32_t> labels) const {
-  Kernel* kernel = level_ == SimdLevel::avx512 ? classify_avx512
-                   : level_ == SimdLevel::avx2 ? classify_avx2
-                                               : classify_baseline;
-  kernel(&signal[begin * dimension_], end - begin, dimension_, panels_, biases_, panel_count_,
-         &labels[begin]);
+  kernel_for(level_, classify_avx512, classify_avx2, classify_baseline)(
+      &signal[begin * dimension_], end - begin, dimension_, panels_, biases_, panel_count_,
+      &labels[begin]);
 }
 
 }  // namespace prt::cpca

@@ -62,9 +62,6 @@ std::size_t draw(std::span<const double> weights, std::span<const double> block_
   return sum;
 }
 
-using Lower = double(const float* points, std::size_t stride, const float* mean, double* distances,
-                     std::size_t count);
-
 [[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] double lower_avx512(const float* points,
                                                                           std::size_t stride,
                                                                           const float* mean,
@@ -96,9 +93,7 @@ std::vector<float> seed_means(std::span<const float> signal, std::size_t dimensi
                                        kMaxPerMean * cluster_count));
   const std::size_t stride = (dimension + kDistanceLanes - 1) / kDistanceLanes * kDistanceLanes;
   const std::vector<float> sample = draw_sample(signal, dimension, stride, sample_count, random);
-  Lower* lower = simd_level() == SimdLevel::avx512 ? lower_avx512
-                 : simd_level() == SimdLevel::avx2 ? lower_avx2
-                                                   : lower_baseline;
+  const auto lower = kernel_for(simd_level(), lower_avx512, lower_avx2, lower_baseline);
   std::vector<double> distances(sample_count, std::numeric_limits<double>::infinity());
   std::vector<double> block_sums(block_count(sample_count, kBlock));
   std::vector<float> means;

@@ -198,11 +198,8 @@ void ShadowTree::trace(const Vec3& origin, const Vec3& normal, std::span<const B
   // Roundings of the nodes' tests are below 14 units of 2^-24 of the largest coordinate.
   const float margin = 0x1p-20f * std::max({1.0f, std::abs(o.x), std::abs(o.y), std::abs(o.z)});
   const ShadowQuery query{{o.x, o.y, o.z}, {normal.x, normal.y, normal.z}, margin};
-  auto* kernel = level_ == SimdLevel::avx512 ? trace_shadows_avx512
-                 : level_ == SimdLevel::avx2 ? trace_shadows_avx2
-                                             : trace_shadows_baseline;
-  kernel({nodes_.data(), root_, triangles_.data()}, query, beams.data(), beams.size(),
-         lanes.data());
+  kernel_for(level_, trace_shadows_avx512, trace_shadows_avx2, trace_shadows_baseline)(
+      {nodes_.data(), root_, triangles_.data()}, query, beams.data(), beams.size(), lanes.data());
 }
 
 }  // namespace prt::ray

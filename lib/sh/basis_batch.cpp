@@ -62,14 +62,7 @@ void evaluate_batch(int band_count, const float* x, const float* y, const float*
                     std::size_t count, float* values, std::size_t stride) {
   assert(band_count >= 0 && band_count <= kMaxBandCount && stride >= count);
   const Batch batch{band_count, x, y, z, count, values, stride};
-  switch (simd_level()) {
-    case SimdLevel::avx512:
-      return evaluate_avx512(batch);
-    case SimdLevel::avx2:
-      return evaluate_avx2(batch);
-    default:
-      return evaluate_all<Lanes4>(batch);
-  }
+  kernel_for(simd_level(), evaluate_avx512, evaluate_avx2, evaluate_all<Lanes4>)(batch);
 }
 
 }  // namespace prt::sh

@@ -65,14 +65,7 @@ void Rotation::apply_batch(const float* from, float* to, std::size_t count,
                            std::size_t stride) const {
   assert(stride >= count);
   const Batch batch{band_count_, blocks_float_.data(), from, to, count, stride};
-  switch (simd_level()) {
-    case SimdLevel::avx512:
-      return rotate_avx512(batch);
-    case SimdLevel::avx2:
-      return rotate_avx2(batch);
-    default:
-      return rotate_all<Lanes4>(batch);
-  }
+  kernel_for(simd_level(), rotate_avx512, rotate_avx2, rotate_all<Lanes4>)(batch);
 }
 
 }  // namespace prt::sh

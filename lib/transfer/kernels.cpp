@@ -60,26 +60,13 @@ PRTKIT_AVX2 void add_gathered_avx2(GatherTerms terms, const float* field, std::s
 }  // namespace
 
 void add_weighted_rows(Terms terms, const float* rows, std::size_t stride, float* sum) {
-  switch (simd_level()) {
-    case SimdLevel::avx512:
-      return add_rows_avx512(terms, rows, stride, sum);
-    case SimdLevel::avx2:
-      return add_rows_avx2(terms, rows, stride, sum);
-    default:
-      return add_rows_body(terms, rows, stride, sum);
-  }
+  kernel_for(simd_level(), add_rows_avx512, add_rows_avx2, add_rows_body)(terms, rows, stride, sum);
 }
 
 void add_gathered(GatherTerms terms, const float* field, std::size_t channels, std::size_t columns,
                   float* sum) {
-  switch (simd_level()) {
-    case SimdLevel::avx512:
-      return add_gathered_avx512(terms, field, channels, columns, sum);
-    case SimdLevel::avx2:
-      return add_gathered_avx2(terms, field, channels, columns, sum);
-    default:
-      return add_gathered_body(terms, field, channels, columns, sum);
-  }
+  kernel_for(simd_level(), add_gathered_avx512, add_gathered_avx2, add_gathered_body)(
+      terms, field, channels, columns, sum);
 }
 
 }  // namespace prt::transfer

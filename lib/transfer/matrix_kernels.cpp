@@ -130,14 +130,7 @@ void half_to_float(const std::uint16_t* from, float* to, std::size_t count) {
 }
 
 void add_product(const SmallProduct& product) {
-  switch (simd_level()) {
-    case SimdLevel::avx512:
-      return add_product_avx512(product);
-    case SimdLevel::avx2:
-      return add_product_avx2(product);
-    default:
-      return add_all<sh::Lanes4>(product);
-  }
+  kernel_for(simd_level(), add_product_avx512, add_product_avx2, add_all<sh::Lanes4>)(product);
 }
 
 }  // namespace prt::transfer
