@@ -17,6 +17,7 @@
 #include "core/cpu.h"
 #include "core/hash.h"
 #include "core/log.h"
+#include "core/mapped_array.h"
 
 namespace prt {
 
@@ -30,6 +31,7 @@ struct RecordHead {
   std::uint64_t byte_count, number;
 };
 constexpr std::size_t kHashSize = 32;
+constexpr std::size_t kPiece = std::size_t{8} << 20;  // what is moved of a mapped array at a time
 
 std::string make_head(const std::string& key) {
   Hasher hasher;
@@ -44,9 +46,10 @@ std::string make_head(const std::string& key) {
 bool read_all(int descriptor, void* bytes, std::size_t count, std::size_t offset) {
   auto* to = static_cast<char*>(bytes);
   while (count > 0) {
-    const ssize_t done = pread(descriptor, to, count, static_cast<off_t>(offset));
+    const ssize_t done = pread(descriptor, to, std::min(count, kPiece), static_cast<off_t>(offset));
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) return false;
+    trim_mapped_arrays();
     to += done;
     offset += static_cast<std::size_t>(done);
     count -= static_cast<std::size_t>(done);
@@ -57,9 +60,11 @@ bool read_all(int descriptor, void* bytes, std::size_t count, std::size_t offset
 bool write_all(int descriptor, const void* bytes, std::size_t count, std::size_t offset) {
   const auto* from = static_cast<const char*>(bytes);
   while (count > 0) {
-    const ssize_t done = pwrite(descriptor, from, count, static_cast<off_t>(offset));
+    const ssize_t done =
+        pwrite(descriptor, from, std::min(count, kPiece), static_cast<off_t>(offset));
     if (done < 0 && errno == EINTR) continue;
     if (done < 0) return false;
+    trim_mapped_arrays();
     from += done;
     offset += static_cast<std::size_t>(done);
     count -= static_cast<std::size_t>(done);
@@ -191,7 +196,10 @@ void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
   const RecordHead head{name.stage, name.index, result.size(), last_number_ + 1};
   Hasher hasher;
   hasher.add(&head, sizeof head);
-  hasher.add(result);
+  for (std::size_t at = 0; at < result.size(); at += kPiece) {
+    hasher.add(result.subspan(at, std::min(kPiece, result.size() - at)));
+    trim_mapped_arrays();
+  }
   const auto room = room_.find(result.size());
   const std::size_t offset = room != room_.end() ? room->second : end_ + sizeof head;
   if (room != room_.end()) room_.erase(room);

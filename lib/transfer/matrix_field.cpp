@@ -1,7 +1,5 @@
 #include "transfer/matrix_field.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cassert>
@@ -41,40 +39,18 @@ ExitBasis::ExitBasis(std::span<const int> functions)
 
 namespace {
 
-[[noreturn]] void throw_system(const std::string& what, const std::filesystem::path& folder,
-                               int error) {
-  throw_failed(what + ": " + std::strerror(error), {.file = folder.string()});
-}
-
-int open_nameless(const std::filesystem::path& folder) {
-  const int descriptor = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor >= 0) return descriptor;
-  // Some file systems have no nameless files.
-  std::string pattern = (folder / ".prtkit.XXXXXX").string();
-  const int named = mkostemp(pattern.data(), O_CLOEXEC);
-  if (named < 0) throw_system("cannot create a temporary file", folder, errno);
-  unlink(pattern.c_str());
-  return named;
+[[noreturn]] void throw_system(const std::string& doing, const NamelessFile& file, int error) {
+  throw_failed(doing + " a temporary file failed: " + std::strerror(error),
+               {.file = file.folder().string()});
 }
 
 }  // namespace
 
 ExitField::ExitField(const std::filesystem::path& folder, std::size_t vertex_count,
                      std::size_t row_size)
-    : folder_(folder), vertex_count_(vertex_count), row_size_(row_size) {
-  descriptor_ = open_nameless(folder);
-  if (byte_count() == 0) return;
-  const int error = posix_fallocate(descriptor_, 0, static_cast<off_t>(byte_count()));
-  if (error == 0) return;
-  close(descriptor_);
-  throw_failed("no room for what surfaces reflect",
-               {.file = folder.string(),
-                .found = std::strerror(error),
-                .expected = fmt::format("{} MB of space for the time of the work",
-                                        (byte_count() >> 20) + 1)});
+    : file_(folder), vertex_count_(vertex_count), row_size_(row_size) {
+  file_.grow(byte_count());
 }
-
-ExitField::~ExitField() { close(descriptor_); }
 
 void ExitField::write(std::size_t first, std::span<const std::uint16_t> halfs) {
   assert(first * row_size_ + halfs.size() <= vertex_count_ * row_size_);
@@ -82,9 +58,9 @@ void ExitField::write(std::size_t first, std::span<const std::uint16_t> halfs) {
   std::size_t left = halfs.size() * sizeof(std::uint16_t);
   auto offset = static_cast<off_t>(first * row_size_ * sizeof(std::uint16_t));
   while (left > 0) {
-    const ssize_t count = pwrite(descriptor_, from, left, offset);
+    const ssize_t count = pwrite(file_.descriptor(), from, left, offset);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) throw_system("writing a temporary file failed", folder_, errno);
+    if (count <= 0) throw_system("writing", file_, errno);
     from += count, offset += count, left -= static_cast<std::size_t>(count);
   }
 }
@@ -95,9 +71,9 @@ void ExitField::read(std::size_t first, std::span<std::uint16_t> halfs) const {
   std::size_t left = halfs.size() * sizeof(std::uint16_t);
   auto offset = static_cast<off_t>(first * row_size_ * sizeof(std::uint16_t));
   while (left > 0) {
-    const ssize_t count = pread(descriptor_, to, left, offset);
+    const ssize_t count = pread(file_.descriptor(), to, left, offset);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) throw_system("reading a temporary file failed", folder_, errno);
+    if (count <= 0) throw_system("reading", file_, errno);
     to += count, offset += count, left -= static_cast<std::size_t>(count);
   }
 }

@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "core/nameless_file.h"
+
 namespace prt::transfer {
 
 /// Functions orthonormal on the hemisphere that span the SH functions of a list:
@@ -31,9 +33,6 @@ class ExitField {
   /// A file without a name in `folder`, which goes with its owner. Throws Error (failed) when there
   /// is no room for vertex_count rows of row_size values.
   ExitField(const std::filesystem::path& folder, std::size_t vertex_count, std::size_t row_size);
-  ~ExitField();
-  ExitField(const ExitField&) = delete;
-  ExitField& operator=(const ExitField&) = delete;
 
   std::size_t row_size() const { return row_size_; }
   std::size_t byte_count() const { return vertex_count_ * row_size_ * sizeof(std::uint16_t); }
@@ -44,9 +43,8 @@ class ExitField {
   void read(std::size_t first, std::span<std::uint16_t> halfs) const;
 
  private:
-  std::filesystem::path folder_;
+  NamelessFile file_;
   std::size_t vertex_count_, row_size_;
-  int descriptor_ = -1;
 };
 
 }  // namespace prt::transfer
