@@ -80,17 +80,12 @@ Hit hit_of_lane(const RTCRayHit16& packet, std::size_t lane) {
           facing > 0.0f};
 }
 
-/// Triangles beyond which a compact tree, a third of the size, is worth a quarter more time.
-constexpr std::size_t kMostForSpeed = 1'500'000;
-
 class EmbreeEngine final : public Engine {
  public:
   explicit EmbreeEngine(const Triangles& triangles)
       : device_(rtcNewDevice(nullptr)), scene_(device_ ? rtcNewScene(device_.get()) : nullptr) {
     if (!scene_) throw_failed("Embree cannot start");
-    const bool is_large = triangles.indices.size() / 3 > kMostForSpeed;
-    rtcSetSceneFlags(scene_.get(), is_large ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT
-                                            : RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_MEDIUM);
     if (!triangles.indices.empty()) add_geometry(triangles);
     rtcCommitScene(scene_.get());

@@ -45,6 +45,9 @@ struct Triangles {
 /// Throws Error (bad_input) unless positions are finite and at most kMaxCoordinate and indices
 /// valid.
 void check_triangles(const Triangles& triangles);
+/// Its parts: one vertex, by its number, and the indices of triangles.
+void check_position(const Vec3& position, std::size_t vertex);
+void check_indices(std::span<const std::uint32_t> indices, std::size_t vertex_count);
 
 class Engine {
  public:

@@ -113,6 +113,11 @@ PRT_LANES Lanes operator*(const Lanes& a, const Lanes& b) {
   PRT_EACH_REGISTER r.part[k] = a.part[k] * b.part[k];
   return r;
 }
+PRT_LANES Lanes operator/(const Lanes& a, const Lanes& b) {
+  Lanes r;
+  PRT_EACH_REGISTER r.part[k] = a.part[k] / b.part[k];
+  return r;
+}
 /// a b + c, rounded once where the processor can.
 PRT_LANES Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
   Lanes r;

@@ -152,8 +152,7 @@ struct ChildTest {
 
 /// Lanes, of `lanes`, along which something lies.
 template <int m>
-Mask trace_beam(const ShadowTreeView& tree, const ShadowQuery& query, const Beam& beam,
-                Mask lanes) {
+Mask trace_beam(const WideTreeView& tree, const ShadowQuery& query, const Beam& beam, Mask lanes) {
   constexpr int p = (m + 1) % 3, q = (m + 2) % 3;
   float range[4] = {beam.u_min, beam.u_max, beam.v_min, beam.v_max};
   if (lanes != (1u << beam.lane_count) - 1) {
@@ -203,7 +202,7 @@ PRT_LANES Mask above_horizon(const Beam& beam, const float normal[3]) {
   return lt((1u << beam.lane_count) - 1, broadcast(0.0f), cosine);
 }
 
-PRT_LANES void trace_beams(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+PRT_LANES void trace_beams(const WideTreeView& tree, const ShadowQuery& query, const Beam* beams,
                            std::size_t beam_count, BeamLanes* lanes) {
   for (std::size_t i = 0; i < beam_count; ++i) {
     const Beam& beam = beams[i];

@@ -1,5 +1,5 @@
-// What the kernels of the shadow tree (shadow_kernel.h) work on: plain arrays, no other header, for
-// they are compiled with other flags than the rest of the program.
+// What the kernels of the wide tree (shadow_kernel.h, ray_kernel.h) work on: plain arrays, no other
+// header, for they are compiled with other flags than the rest of the program.
 #pragma once
 
 #include <cstddef>
@@ -38,10 +38,11 @@ struct alignas(64) ShadowNode {
 
 /// The leaf from triangle k on starts at triangles[9 k]: nine rows of as many floats as it has
 /// triangles, the coordinates x, y, z of their corners 0, 1, 2. Loads read up to 15 floats past it.
-struct ShadowTreeView {
+struct WideTreeView {
   const ShadowNode* nodes;
   std::uint32_t root;
   const float* triangles;
+  const std::uint32_t* numbers;  ///< of the triangles, as the caller counts them
 };
 
 struct ShadowQuery {
@@ -51,11 +52,29 @@ struct ShadowQuery {
 
 constexpr int kMaxTreeDepth = 48;
 
-void trace_shadows_avx512(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+void trace_shadows_avx512(const WideTreeView& tree, const ShadowQuery& query, const Beam* beams,
                           std::size_t beam_count, BeamLanes* lanes);
-void trace_shadows_avx2(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+void trace_shadows_avx2(const WideTreeView& tree, const ShadowQuery& query, const Beam* beams,
                         std::size_t beam_count, BeamLanes* lanes);
-void trace_shadows_baseline(const ShadowTreeView& tree, const ShadowQuery& query, const Beam* beams,
+void trace_shadows_baseline(const WideTreeView& tree, const ShadowQuery& query, const Beam* beams,
                             std::size_t beam_count, BeamLanes* lanes);
+
+/// A ray in the tree's coordinates: origin + t direction, t in (t_near, t_far].
+struct RayQuery {
+  float origin[3], direction[3], t_near, t_far;
+};
+
+struct RayAnswer {
+  std::uint32_t triangle;  ///< number; of equal t the lowest. 2^32 - 1: none
+  float t, u, v;           ///< as ray::Hit has them
+  bool back_face;
+};
+
+RayAnswer find_closest_avx512(const WideTreeView& tree, const RayQuery& query);
+RayAnswer find_closest_avx2(const WideTreeView& tree, const RayQuery& query);
+RayAnswer find_closest_baseline(const WideTreeView& tree, const RayQuery& query);
+bool is_occluded_avx512(const WideTreeView& tree, const RayQuery& query);
+bool is_occluded_avx2(const WideTreeView& tree, const RayQuery& query);
+bool is_occluded_baseline(const WideTreeView& tree, const RayQuery& query);
 
 }  // namespace prt::ray

@@ -7,17 +7,20 @@
 
 #include <memory>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "core/cpu.h"
 #include "ray/beams.h"
+#include "ray/wide_tree.h"
 
 namespace prt::ray {
 
 class ShadowTree {
  public:
-  /// Copies what it needs, some 45 bytes a triangle. Throws as make_embree_engine does.
+  /// Copies what it needs, some 49 bytes a triangle. Throws as make_embree_engine does.
   explicit ShadowTree(const Triangles& triangles, SimdLevel level = simd_level());
+  explicit ShadowTree(std::shared_ptr<const WideTree> tree, SimdLevel level = simd_level())
+      : level_(level), tree_(std::move(tree)) {}
 
   /// Casts a ray from the origin (t > 0) in each direction d with normal · d > 0 and tells which
   /// are blocked, by front or back. lanes.size() == beams.size(). Thread safe; the answer depends
@@ -26,12 +29,8 @@ class ShadowTree {
              std::span<BeamLanes> lanes) const;
 
  private:
-  friend class ShadowTreeBuilder;
   SimdLevel level_;
-  float scale_ = 1.0f;  ///< a power of two that makes coordinates at most 1: no overflow, no loss
-  std::vector<ShadowNode> nodes_;
-  std::vector<float> triangles_;
-  std::uint32_t root_ = 0;
+  std::shared_ptr<const WideTree> tree_;
 };
 
 }  // namespace prt::ray

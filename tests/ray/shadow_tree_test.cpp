@@ -269,7 +269,7 @@ TEST(ShadowTree, ABeamHoldsEachDirectionOnceAndStaysOnOneFace) {
 TEST(ShadowTree, EmptySceneBlocksNothing) {
   const DirectionList directions = random_directions(100, 20);
   const std::vector<bool> blocked =
-      blocked_by_tree(ShadowTree({}), Vec3(0.0f), {0, 0, 1}, directions);
+      blocked_by_tree(ShadowTree(Triangles{}), Vec3(0.0f), {0, 0, 1}, directions);
   EXPECT_EQ(std::count(blocked.begin(), blocked.end(), true), 0);
 }
 

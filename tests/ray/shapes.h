@@ -70,6 +70,19 @@ inline Soup unit_sphere(int level) {
   return soup;
 }
 
+/// Towards all sides, of any length, some with ends.
+inline std::vector<Ray> random_rays(std::size_t count, std::uint64_t seed) {
+  Pcg32 random(seed);
+  std::vector<Ray> rays(count);
+  for (Ray& ray : rays) {
+    ray.origin = random_point(random, 1.5f);
+    ray.direction = random_direction(random) * (0.1f + 3.0f * random.uniform());
+    if (random.below(2) == 0) ray.t_near = random.uniform();
+    if (random.below(2) == 0) ray.t_far = ray.t_near + random.uniform();
+  }
+  return rays;
+}
+
 /// scale × positions + translation.
 inline Soup transformed(Soup soup, float scale, const Vec3& translation) {
   for (Vec3& p : soup.positions) p = p * scale + translation;
