@@ -15,14 +15,15 @@
 
 #include "bare_embree.h"
 #include "core/parallel.h"
+#include "core/spatial_order.h"
 #include "mesh/mesh_file.h"
 #include "mesh/normals.h"
 #include "ray/engine.h"
 #include "ray/shadow_tree.h"
+#include "ray/wide_engine.h"
 #include "ray_rate.h"
 #include "transfer/diffuse.h"
 #include "transfer/directions.h"
-#include "transfer/spatial_order.h"
 
 namespace {
 
@@ -51,7 +52,9 @@ struct Origin {
 
 /// The vertices of every kBlockStride-th block of neighbours.
 std::vector<Origin> make_origins(const mesh::TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> order = transfer::spatial_order(mesh.positions);
+  const auto position = [&](std::size_t i) { return mesh.positions[i]; };
+  const MappedArray<std::uint32_t> order =
+      spatial_order({mesh.vertex_count(), position}, mesh.vertex_count(), position);
   std::vector<Origin> origins;
   for (std::size_t first = 0; first < order.size(); first += kVertexBlock * kBlockStride) {
     for (std::size_t v = first; v < std::min(first + kVertexBlock, order.size()); ++v) {
@@ -79,6 +82,16 @@ Rate measure_engine(const ray::Engine& engine, const std::vector<Ray>& rays) {
     std::vector<std::uint8_t> blocked(end - begin);
     engine.occluded({&rays[begin], end - begin}, blocked);
     return static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), 1));
+  });
+}
+
+/// Closest hits, and how many rays have one.
+Rate measure_hits(const ray::Engine& engine, const std::vector<Ray>& rays) {
+  return measure(rays.size(), kRaysPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<ray::Hit> hits(end - begin);
+    engine.closest_hit({&rays[begin], end - begin}, hits);
+    return static_cast<std::size_t>(std::count_if(
+        hits.begin(), hits.end(), [](const ray::Hit& hit) { return hit.triangle != ray::kNoHit; }));
   });
 }
 
@@ -165,7 +178,10 @@ int main(int argc, char** argv) {
   const std::vector<Ray> rays = make_rays(origins, directions);
   const std::vector<RTCRay> bare = bench::embree_rays(rays);
   const auto engine = ray::make_embree_engine({mesh.positions, mesh.indices});
-  const ray::ShadowTree tree({mesh.positions, mesh.indices});
+  const auto wide_tree = std::make_shared<const ray::WideTree>(
+      ray::TriangleSource::of({mesh.positions, mesh.indices}));
+  const auto wide = ray::make_wide_engine(wide_tree);
+  const ray::ShadowTree tree(wide_tree);
   const BareEmbree robust(mesh, true, RTC_BUILD_QUALITY_MEDIUM);
   const BareEmbree fast(mesh, false, RTC_BUILD_QUALITY_MEDIUM);
   const BareEmbree fast_high(mesh, false, RTC_BUILD_QUALITY_HIGH);
@@ -177,6 +193,9 @@ int main(int argc, char** argv) {
   modes.push_back({"prtkit transfer, 5 bands, whole model", [&] {
                      return Rate{measure_bake(mesh, ray_count), 0};
                    }});
+  modes.push_back({"prtkit wide engine", [&] { return measure_engine(*wide, rays); }});
+  modes.push_back({"prtkit ray::Engine, closest", [&] { return measure_hits(*engine, rays); }});
+  modes.push_back({"prtkit wide engine, closest", [&] { return measure_hits(*wide, rays); }});
   add_modes("Embree robust", robust, bare, modes);
   add_modes("Embree fast", fast, bare, modes);
   add_modes("Embree fast, high quality", fast_high, bare, modes);

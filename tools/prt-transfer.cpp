@@ -111,6 +111,7 @@ transfer::MatrixOptions matrix_options(const Options& options) {
           .channels = from.channels,
           .seed = from.seed,
           .projection = zero ? Projection::zero_hemisphere : Projection::least_squares,
+          .scratch_folder = from.scratch.folder,
           .checkpoint = from.checkpoint};
 }
 
@@ -121,6 +122,8 @@ void bake(Options& options, const cli::CommonOptions& common, Report& report) {
   options.diffuse.shadowed = !options.unshadowed;
   options.diffuse.seed = common.seed;
   options.diffuse.checkpoint = cli::checkpoint_beside(options.output);
+  const std::filesystem::path folder = options.output.parent_path();
+  options.diffuse.scratch.folder = folder.empty() ? "." : folder;
   transfer::DiffuseStats stats;
   const signal::TransferSignal signal =
       options.mode == "matrix"

@@ -156,6 +156,17 @@ MetallicRoughness metallic_roughness_at_point(const Scene& scene, const Primitiv
 
 namespace {
 
+/// value(0), value(1), … value(count - 1).
+template <class T, class Value>
+void add_each(Hasher& hasher, std::size_t count, const Value& value) {
+  std::vector<T> block;
+  for (std::size_t begin = 0; begin < count; begin += block.size()) {
+    block.resize(std::min<std::size_t>(count - begin, 4096));
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = value(begin + i);
+    hasher.add(std::span<const T>(block));
+  }
+}
+
 void add_reflection(Hasher& hasher, const Material& m) {
   const float factors[] = {m.ior,
                            m.specular,
@@ -177,15 +188,12 @@ std::string mesh_hash(const Scene& scene) {
     hasher.add(std::span<const std::uint64_t>(counts));
     hasher.add(std::span<const Vec3>(mesh.positions));
     hasher.add(std::span<const Vec3>(mesh.normals));
-    std::vector<Vec3> albedo(mesh.vertex_count());
-    std::vector<Vec2> metallic_roughness(mesh.vertex_count());
-    for (std::size_t i = 0; i < albedo.size(); ++i) {
-      albedo[i] = albedo_at_vertex(scene, primitive, i);
+    add_each<Vec3>(hasher, mesh.vertex_count(),
+                   [&](std::size_t i) { return albedo_at_vertex(scene, primitive, i); });
+    add_each<Vec2>(hasher, mesh.vertex_count(), [&](std::size_t i) {
       const MetallicRoughness at_vertex = metallic_roughness_at_vertex(scene, primitive, i);
-      metallic_roughness[i] = Vec2(at_vertex.metallic, at_vertex.roughness);
-    }
-    hasher.add(std::span<const Vec3>(albedo));
-    hasher.add(std::span<const Vec2>(metallic_roughness));
+      return Vec2(at_vertex.metallic, at_vertex.roughness);
+    });
     hasher.add(std::span<const std::uint32_t>(mesh.indices));
     hasher.add(std::span<const Vec4>(mesh.tangents));
     add_reflection(hasher, primitive.material < 0

@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "core/parallel.h"
 
@@ -20,8 +19,13 @@ constexpr float kInsideShare = 0.9f;       // a corner of a dark room touches wa
 /// Vertices that are one point of the surface.
 struct Node {
   std::vector<std::uint32_t> members;
-  std::set<std::size_t> neighbours;
+  std::vector<std::uint32_t> neighbours;  ///< nodes, in order
   bool resolved = true;
+
+  void add_neighbour(std::uint32_t node) {
+    const auto place = std::lower_bound(neighbours.begin(), neighbours.end(), node);
+    if (place == neighbours.end() || *place != node) neighbours.insert(place, node);
+  }
 };
 
 using Key = std::array<float, 6>;
@@ -33,17 +37,18 @@ Key key_of(const SceneIndex& index, std::uint32_t vertex) {
 }
 
 /// The graph of the triangles that touch a buried vertex.
-std::vector<Node> buried_graph(const SceneIndex& index, const std::vector<std::uint8_t>& buried) {
+std::vector<Node> buried_graph(const SceneIndex& index, std::span<const std::uint8_t> buried) {
   std::vector<Node> nodes;
-  std::map<Key, std::size_t> node_of_key;
-  for (std::size_t t = 0; t < index.triangle_count(); ++t) {
+  std::map<Key, std::uint32_t> node_of_key;
+  for_each_trimmed(index.triangle_count(), [&](std::size_t t) {
     const std::array<std::uint32_t, 3> corners = index.triangle(t);
     if (std::none_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return buried[v]; })) {
-      continue;
+      return;
     }
-    std::array<std::size_t, 3> node;
+    std::array<std::uint32_t, 3> node;
     for (std::size_t k = 0; k < 3; ++k) {
-      node[k] = node_of_key.try_emplace(key_of(index, corners[k]), nodes.size()).first->second;
+      const auto next = static_cast<std::uint32_t>(nodes.size());
+      node[k] = node_of_key.try_emplace(key_of(index, corners[k]), next).first->second;
       if (node[k] == nodes.size()) nodes.emplace_back();
       Node& at = nodes[node[k]];
       if (std::find(at.members.begin(), at.members.end(), corners[k]) == at.members.end()) {
@@ -52,10 +57,10 @@ std::vector<Node> buried_graph(const SceneIndex& index, const std::vector<std::u
       }
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      nodes[node[k]].neighbours.insert(node[(k + 1) % 3]);
-      nodes[node[k]].neighbours.insert(node[(k + 2) % 3]);
+      nodes[node[k]].add_neighbour(node[(k + 1) % 3]);
+      nodes[node[k]].add_neighbour(node[(k + 2) % 3]);
     }
-  }
+  });
   return nodes;
 }
 
@@ -81,7 +86,7 @@ bool sees_nothing(const Hemisphere& hemisphere) {
 }
 
 std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directions,
-                             std::vector<std::uint8_t>& buried) {
+                             std::span<std::uint8_t> buried) {
   std::vector<std::uint32_t> suspects;
   for (std::uint32_t v : index.vertex_order()) {
     if (buried[v]) suspects.push_back(v);
@@ -100,7 +105,7 @@ std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directio
   return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
-BuriedRepair::BuriedRepair(const SceneIndex& index, const std::vector<std::uint8_t>& buried) {
+BuriedRepair::BuriedRepair(const SceneIndex& index, std::span<const std::uint8_t> buried) {
   std::vector<Node> nodes = buried_graph(index, buried);
   std::vector<std::size_t> ring;
   do {
@@ -108,7 +113,7 @@ BuriedRepair::BuriedRepair(const SceneIndex& index, const std::vector<std::uint8
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (nodes[i].resolved) continue;
       const std::size_t begin = sources_.size();
-      for (std::size_t neighbour : nodes[i].neighbours) {
+      for (const std::uint32_t neighbour : nodes[i].neighbours) {
         if (nodes[neighbour].resolved) sources_.push_back(nodes[neighbour].members.front());
       }
       if (sources_.size() == begin) continue;
@@ -135,6 +140,7 @@ void BuriedRepair::apply(float* rows, std::size_t stride) const {
       const float* source = rows + sources_[s] * stride;
       for (std::size_t j = 0; j < stride; ++j) row[j] += weight * source[j];
     }
+    trim_mapped_arrays();
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "transfer/hemisphere.h"
@@ -20,14 +21,14 @@ bool sees_nothing(const Hemisphere& hemisphere);
 /// sees, or end within rounding of their origin. A dark open cavity shows fronts at a distance.
 /// Returns the number of rays cast. Not for several threads at a time.
 std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directions,
-                             std::vector<std::uint8_t>& buried);
+                             std::span<std::uint8_t> buried);
 
 /// How to fill in rows of buried vertices, made once and applied to any field over the vertices.
 /// Vertices with equal position and normal (seams of texture coordinates) count as one.
 class BuriedRepair {
  public:
   /// buried[v] != 0 marks vertices.
-  BuriedRepair(const SceneIndex& index, const std::vector<std::uint8_t>& buried);
+  BuriedRepair(const SceneIndex& index, std::span<const std::uint8_t> buried);
 
   /// Fills the marked rows of a field of `stride` floats a vertex; rows of vertices that nothing
   /// unburied is connected to stay as they are.

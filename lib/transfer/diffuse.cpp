@@ -24,8 +24,7 @@ namespace prt::transfer {
 
 namespace {
 
-// Larger scenes give the shadow tree back before the engine's tree is built.
-constexpr std::size_t kBothTreesVertexCount = 750'000;
+constexpr std::size_t kFieldBlock = 1024;  // rows of a parallel block
 
 void check_options(const DiffuseOptions& options) {
   check_range("band count", options.band_count, 1, sh::kMaxBandCount);
@@ -57,7 +56,7 @@ class DiffuseBake {
   DiffuseBake(const mesh::Scene& scene, const DiffuseOptions& options, DiffuseStats& stats)
       : options_(options),
         stats_(stats),
-        index_(scene),
+        index_(scene, options.scratch),
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
         coefficient_count_(sh::row_size(options.band_count)),
         checkpoint_(options.checkpoint, checkpoint_key(scene, options)),
@@ -67,7 +66,7 @@ class DiffuseBake {
     signal_.channel_count = choose_channel_count(scene, options.channels, options.bounce_count > 0);
     row_size_ = static_cast<std::size_t>(signal_.dimension());
     signal_.values.resize(index_.vertex_count() * row_size_);
-    buried_.resize(index_.vertex_count());
+    buried_ = MappedArray<std::uint8_t>(index_.vertex_count(), index_.scratch_folder());
   }
 
   signal::TransferSignal run() {
@@ -76,8 +75,8 @@ class DiffuseBake {
     } else {
       fill_unshadowed();
     }
-    std::vector<float> blocked =
-        options_.bounce_count > 0 ? blocked_irradiance() : std::vector<float>();
+    MappedArray<float> blocked;
+    if (options_.bounce_count > 0) blocked = blocked_irradiance();
     const BuriedRepair repair(index_, buried_);
     repair.apply(signal_.values.data(), row_size_);
     if (options_.bounce_count > 0) bounce(repair, std::move(blocked));
@@ -118,7 +117,6 @@ class DiffuseBake {
     });
     for (std::size_t v = 0; v < index_.vertex_count(); ++v) copy_to_channels(v);
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
-    if (index_.vertex_count() > kBothTreesVertexCount) index_.drop_shadow_tree();
     stats_.rays_cast += confirm_buried(index_, directions_, buried_);
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
@@ -156,42 +154,38 @@ class DiffuseBake {
   }
 
   /// ∫ (1 - V) max(0, cos) of every vertex: pi less what a constant light brings.
-  std::vector<float> blocked_irradiance() {
+  MappedArray<float> blocked_irradiance() {
     const float constant_basis = 0.5f * std::sqrt(std::numbers::inv_pi_v<float>);
-    std::vector<float> blocked(index_.vertex_count());
-    for (std::size_t v = 0; v < blocked.size(); ++v) {
+    MappedArray<float> blocked(index_.vertex_count(), index_.scratch_folder());
+    for_each_trimmed(blocked.size(), [&](std::size_t v) {
       blocked[v] = std::max(0.0f, std::numbers::pi_v<float> - row(v)[0] / constant_basis);
-    }
+    });
     return blocked;
   }
 
-  /// The larger the model, the less of the 500 MB that diffuse.h promises its trees leave for hits.
-  std::size_t hit_bytes() const {
-    constexpr std::size_t kTreeBytesPerVertex = 400, kShadowTreeBytesPerVertex = 100,
-                          kShared = std::size_t{416} << 20, kLeast = std::size_t{16} << 20;
-    const bool both = index_.vertex_count() <= kBothTreesVertexCount;
-    const std::size_t trees =
-        (kTreeBytesPerVertex + (both ? kShadowTreeBytesPerVertex : 0)) * index_.vertex_count();
-    return std::min(options_.hit_bytes, trees + kLeast < kShared ? kShared - trees : kLeast);
+  /// How many coefficients are bounced at a time: as many as memory allows, or, where the fields
+  /// lie in files, all.
+  std::size_t bounced_columns() const {
+    const auto channels = static_cast<std::size_t>(signal_.channel_count);
+    if (index_.is_large()) return coefficient_count_;
+    const std::size_t fit = options_.bounce_bytes /
+                            (3 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
+    return fit > 0 ? std::min(fit * kRowPadding, padded(coefficient_count_)) : 1;
   }
 
-  /// Bounces act on each coefficient alone, so they go through as many at a time as memory allows.
-  void bounce(const BuriedRepair& repair, std::vector<float> blocked) {
+  /// Bounces act on each coefficient alone: they may go through a few at a time.
+  void bounce(const BuriedRepair& repair, MappedArray<float> blocked) {
     if (index_.vertex_count() == 0) return;
     const Stopwatch watch;
     const int rays = choose_bounce_ray_count(options_.bounce_ray_count, options_.ray_count);
     Reflection reflection(index_,
                           make_directions(2 * static_cast<std::size_t>(rays), options_.seed),
-                          signal_.channel_count, std::move(blocked), hit_bytes());
+                          signal_.channel_count, std::move(blocked), options_.hit_bytes);
     {
       Progress progress("bounce rays", index_.vertex_count(), "vertices");
       stats_.rays_cast += reflection.trace(progress);
     }
-    const auto channels = static_cast<std::size_t>(signal_.channel_count);
-    const std::size_t fit = options_.bounce_bytes /
-                            (3 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
-    const std::size_t columns =
-        fit > 0 ? std::min(fit * kRowPadding, padded(coefficient_count_)) : 1;
+    const std::size_t columns = bounced_columns();
     Progress progress("bounces",
                       block_count(coefficient_count_, columns) *
                           static_cast<std::size_t>(options_.bounce_count) * index_.vertex_count(),
@@ -211,26 +205,32 @@ class DiffuseBake {
                         std::size_t columns, Progress& progress) {
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t used = std::min(columns, coefficient_count_ - first);
-    const std::size_t size = index_.vertex_count() * channels * columns;
-    std::vector<float> state(2 * size + 1), next(size);
-    float *sum = state.data(), *field = sum + size, &done = state.back();
+    const std::size_t stride = channels * columns, size = index_.vertex_count() * stride;
+    MappedArray<float> state(2 * size + 1, index_.scratch_folder());
+    MappedArray<float> next(size, index_.scratch_folder());
+    float *sum = state.data(), *field = sum + size, &done = state[2 * size];
     const auto for_each_segment = [&](const auto& body) {
-      for (std::size_t i = 0; i < index_.vertex_count() * channels; ++i) {
-        body(&signal_.values[i * coefficient_count_ + first], &sum[i * columns]);
-      }
+      for_each_trimmed(index_.vertex_count() * channels, [&](std::size_t i) {
+        body(&signal_.values[i * coefficient_count_ + first], i * columns);
+      });
     };
     const Checkpoint::Name name{kBounceStage, static_cast<std::uint32_t>(first)};
     if (!checkpoint_.restore(name, std::span(state))) {
-      for_each_segment([&](const float* value, float* s) { std::copy_n(value, used, s); });
-      std::copy_n(sum, size, field);
+      for_each_segment([&](const float* value, std::size_t at) {
+        std::copy_n(value, used, &sum[at]);
+        std::copy_n(value, used, &field[at]);
+      });
     }
     const double resumed = static_cast<double>(used) * double{done} / options_.bounce_count;
     progress.advance(static_cast<std::size_t>(done) * index_.vertex_count());
     Stopwatch since_stored;
     while (done < static_cast<float>(options_.bounce_count)) {
       stats_.rays_cast += reflection.gather(field, columns, next.data());
-      repair.apply(next.data(), channels * columns);
-      for (std::size_t i = 0; i < size; ++i) sum[i] += field[i] = next[i];
+      repair.apply(next.data(), stride);
+      parallel_for(size, kFieldBlock * stride, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) sum[i] += field[i] = next[i];
+        trim_mapped_arrays();
+      });
       ++done;
       if (since_stored.seconds() >= options_.checkpoint.after_seconds ||
           done == static_cast<float>(options_.bounce_count)) {
@@ -239,7 +239,7 @@ class DiffuseBake {
       }
       progress.advance(index_.vertex_count());
     }
-    for_each_segment([&](float* value, const float* s) { std::copy_n(s, used, value); });
+    for_each_segment([&](float* value, std::size_t at) { std::copy_n(&sum[at], used, value); });
     return resumed;
   }
 
@@ -264,10 +264,10 @@ class DiffuseBake {
       stats_.primitives.push_back(
           {primitive.name, primitive.mesh.vertex_count(), primitive.mesh.triangle_count(), 0});
     }
-    for (std::size_t v = 0; v < buried_.size(); ++v) {
+    for_each_trimmed(buried_.size(), [&](std::size_t v) {
       stats_.primitives[index_.vertex_place(v).primitive].buried_vertex_count += buried_[v];
       stats_.buried_vertex_count += buried_[v];
-    }
+    });
     stats_.unrepaired_vertex_count = stats_.buried_vertex_count - repair.repaired_count();
   }
 
@@ -279,7 +279,7 @@ class DiffuseBake {
   std::size_t coefficient_count_, row_size_ = 0;
   Checkpoint checkpoint_;
   signal::TransferSignal signal_;
-  std::vector<std::uint8_t> buried_;
+  MappedArray<std::uint8_t> buried_;
 };
 
 }  // namespace

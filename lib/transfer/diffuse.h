@@ -27,6 +27,7 @@
 #include "mesh/scene.h"
 #include "signal/transfer_signal.h"
 #include "transfer/channels.h"
+#include "transfer/scene_index.h"
 
 namespace prt::transfer {
 
@@ -42,7 +43,8 @@ struct DiffuseOptions {
   /// E⁰ as the closed form minus what is blocked; false: as the sum over what is visible.
   bool closed_form = true;
   std::size_t hit_bytes = std::size_t{320} << 20;    ///< for hits kept between bounces, at most
-  std::size_t bounce_bytes = std::size_t{96} << 20;  ///< for the three fields of a bounce
+  std::size_t bounce_bytes = std::size_t{96} << 20;  ///< for the three fields of a bounce in memory
+  ScratchOptions scratch{};        ///< what of a large scene lies in files, and where
   CheckpointOptions checkpoint{};  ///< where to keep what is done, for a run that continues it
 };
 
@@ -67,10 +69,11 @@ struct DiffuseStats {
 };
 
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.
-/// Beyond input and output, memory stays under 500 MB up to some two million vertices; the trees of
-/// rays, about 100 bytes a vertex each, are what grows from there. Throws Error
-/// (usage) on options out of range and Error (bad_input) on positions or normals that are not
-/// finite.
+/// Beyond input and output, memory stays under 500 MB whatever the number of vertices: what else
+/// grows with a large scene lies in files (transfer/scene_index.h), some 120 bytes a vertex, and
+/// with bounces three times the output. Throws Error (usage) on options out of range, Error
+/// (bad_input) on positions or normals that are not finite and Error (failed) when there is no room
+/// for files.
 signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
                                        DiffuseStats& stats);
 

@@ -90,7 +90,7 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
   moment_stride_ = padded_columns(incident_channel_count_ * n);
   matrix_stride_ = padded_columns(n);
   const Stopwatch watch;
-  index_ = std::make_unique<SceneIndex>(scene);
+  index_ = std::make_unique<SceneIndex>(scene, ScratchOptions{.folder = options.scratch_folder});
   if (options.shadowed) index_->build_for_shadow_rays(options.ray_count);
   stats_.build_seconds = watch.seconds();
   visibility_ = compute_visibility(
@@ -158,7 +158,7 @@ void MatrixTransfer::fill_field(int bounce, ExitField& field, Progress& progress
     if (!checkpoint_.restore(name, std::span(halfs))) {
       std::vector<float> rows(halfs.size());
       rays += compute_block(
-          {&index_->vertex_order()[begin], end - begin},
+          index_->vertex_order().subspan(begin, end - begin),
           [&](std::size_t i, const float* matrix) { to_field(matrix, &rows[i * row_size]); });
       float_to_half(rows.data(), halfs.data(), halfs.size());
       checkpoint_.store(name, std::span<const std::uint16_t>(halfs));

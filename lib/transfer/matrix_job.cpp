@@ -6,10 +6,9 @@
 
 namespace prt::transfer {
 
-signal::TransferSignal bake_matrices(const mesh::Scene& scene, MatrixOptions options,
+signal::TransferSignal bake_matrices(const mesh::Scene& scene, const MatrixOptions& options,
                                      const std::filesystem::path& output, bool no_clobber,
                                      DiffuseStats& stats, Report& report) {
-  options.scratch_folder = output.has_parent_path() ? output.parent_path() : ".";
   MatrixTransfer transfer(scene, options, stats);
   const auto computing = [&] { return stats.bounce_seconds + stats.matrix_seconds; };
   const double before = computing();

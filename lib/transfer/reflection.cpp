@@ -13,6 +13,16 @@ namespace {
 
 constexpr float kUnit = 65535.0f;
 
+/// What the trees leave for hits of the 500 MB that diffuse.h promises. Large scenes keep none:
+/// their bounces take all coefficients at once, so that hits are traced once a bounce.
+std::size_t room_beside_trees(const SceneIndex& index) {
+  if (index.is_large()) return 0;
+  constexpr std::size_t kTreeBytesPerVertex = 500, kShared = std::size_t{416} << 20,
+                        kLeast = std::size_t{16} << 20;
+  const std::size_t trees = kTreeBytesPerVertex * index.vertex_count();
+  return trees + kLeast < kShared ? kShared - trees : kLeast;
+}
+
 std::uint16_t pack_unit(float value) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * kUnit));
 }
@@ -25,16 +35,18 @@ Vec3 channel_albedo(const Vec3& albedo, int channel_count) {
 }
 
 Reflection::Reflection(const SceneIndex& index, Directions directions, int channel_count,
-                       std::vector<float> blocked, std::size_t hit_bytes)
+                       MappedArray<float> blocked, std::size_t hit_bytes)
     : index_(index),
       directions_(std::move(directions)),
       channel_count_(static_cast<std::size_t>(channel_count)),
       blocked_(std::move(blocked)),
-      blocks_(block_count(index.vertex_count(), kVertexBlock)),
-      room_(static_cast<std::ptrdiff_t>(hit_bytes / sizeof(PackedHit))) {}
+      room_(static_cast<std::ptrdiff_t>(std::min(hit_bytes, room_beside_trees(index)) /
+                                        sizeof(PackedHit))),
+      blocks_(room_ > 0 ? block_count(index.vertex_count(), kVertexBlock) : 0) {}
 
 std::uint64_t Reflection::trace(Progress& progress) {
   index_.engine();
+  if (blocks_.empty()) return 0;
   std::vector<std::uint64_t> rays(blocks_.size());
   parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
     if (room_ <= 0) return;
@@ -96,7 +108,7 @@ GatherTerm Reflection::unpack(const PackedHit& hit, float scale) const {
 }
 
 std::uint64_t Reflection::gather(const float* field, std::size_t columns, float* next) const {
-  std::vector<std::uint64_t> rays(blocks_.size());
+  std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
   parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
     rays[begin / kVertexBlock] = gather_block(begin, end, field, columns, next);
   });
@@ -105,8 +117,8 @@ std::uint64_t Reflection::gather(const float* field, std::size_t columns, float*
 
 std::uint64_t Reflection::gather_block(std::size_t begin, std::size_t end, const float* field,
                                        std::size_t columns, float* next) const {
-  const Block* block = &blocks_[begin / kVertexBlock];
   Block traced;
+  const Block* block = blocks_.empty() ? &traced : &blocks_[begin / kVertexBlock];
   std::uint64_t rays_cast = 0;
   if (!block->kept) {
     rays_cast = trace_block(begin, end, traced);
@@ -122,6 +134,7 @@ std::uint64_t Reflection::gather_block(std::size_t begin, std::size_t end, const
     float* row = next + index_.vertex_order()[i] * channel_count_ * columns;
     std::fill_n(row, channel_count_ * columns, 0.0f);
     add_gathered(terms, field, channel_count_, columns, row);
+    trim_mapped_arrays();
   }
   return rays_cast;
 }

@@ -1,7 +1,7 @@
 // Interreflection: what the surfaces around a vertex reflect to it. Radiance between surfaces
 // varies slowly beside the edges of the light, so this takes a smaller set of directions than
 // shadows do. Their hits are traced once and kept, packed, within a memory budget; those of other
-// vertices are traced again for every bounce.
+// vertices, and of large scenes, are traced again for every bounce.
 //
 // The small set sees a slightly other share of the hemisphere blocked than the shadow rays did.
 // Each vertex's sum is scaled to their share, so that blocked and reflected energy balance exactly.
@@ -25,9 +25,10 @@ Vec3 channel_albedo(const Vec3& albedo, int channel_count);
 
 class Reflection {
  public:
-  /// `blocked`: ∫ (1 - V) max(0, cos) of every vertex, as the shadow rays found it.
+  /// `blocked`: ∫ (1 - V) max(0, cos) of every vertex, as the shadow rays found it. Hits take
+  /// hit_bytes at most, less where the trees of rays take much memory.
   Reflection(const SceneIndex& index, Directions directions, int channel_count,
-             std::vector<float> blocked, std::size_t hit_bytes);
+             MappedArray<float> blocked, std::size_t hit_bytes);
 
   /// Traces all vertices and keeps their hits while there is room. Returns the number of rays cast.
   std::uint64_t trace(Progress& progress);
@@ -60,9 +61,9 @@ class Reflection {
   const SceneIndex& index_;
   Directions directions_;
   std::size_t channel_count_;
-  std::vector<float> blocked_;
-  std::vector<Block> blocks_;
+  MappedArray<float> blocked_;
   std::atomic<std::ptrdiff_t> room_;  ///< hits that still fit
+  std::vector<Block> blocks_;         ///< none when none fit
 };
 
 }  // namespace prt::transfer

@@ -11,8 +11,7 @@ namespace prt::transfer {
 namespace {
 
 std::span<const std::uint32_t> block_vertices(const SceneIndex& index, std::size_t begin) {
-  return std::span(index.vertex_order())
-      .subspan(begin, std::min(kVertexBlock, index.vertex_count() - begin));
+  return index.vertex_order().subspan(begin, std::min(kVertexBlock, index.vertex_count() - begin));
 }
 
 Checkpoint::Name block_name(std::size_t begin) {
@@ -35,6 +34,7 @@ std::vector<std::uint8_t> restore_traced(const Checkpoint& checkpoint, const Sce
       traced.buried[vertex] = from[traced.count] != 0.0f;
       from += traced.count + 1;
     }
+    trim_mapped_arrays();
     restored[block] = 1;
     stats.resumed_vertex_count += vertices.size();
   }

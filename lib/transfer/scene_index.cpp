@@ -8,7 +8,8 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "transfer/spatial_order.h"
+#include "core/spatial_order.h"
+#include "ray/wide_engine.h"
 
 namespace prt::transfer {
 
@@ -40,7 +41,7 @@ void check_vertices(const mesh::Primitive& primitive) {
 
 }  // namespace
 
-SceneIndex::SceneIndex(const mesh::Scene& scene)
+SceneIndex::SceneIndex(const mesh::Scene& scene, const ScratchOptions& scratch)
     : scene_(scene), vertex_offsets_{0}, triangle_offsets_{0} {
   Imath::Box3f box;
   for (const mesh::Primitive& primitive : scene.primitives) {
@@ -54,97 +55,128 @@ SceneIndex::SceneIndex(const mesh::Scene& scene)
   }
   if (vertex_count() > 0) centre_ = box.min * 0.5f + box.max * 0.5f;
 
-  const TriangleList triangles = triangle_list();
-  ray::check_triangles(triangles.view());
-  vertex_order_ = spatial_order(triangles.positions);
-  find_ray_origins(triangles.positions, triangles.indices);
+  for (std::size_t v = 0; v < vertex_count(); ++v) ray::check_position(position(v), v);
+  for (const mesh::Primitive& primitive : scene.primitives) {
+    ray::check_indices(primitive.mesh.indices, primitive.mesh.vertex_count());
+  }
+  if (vertex_count() > scratch.in_memory_vertices) scratch_folder_ = scratch.folder;
+  const SpatialGrid grid(vertex_count(), [&](std::size_t v) { return position(v); });
+  vertex_order_ = spatial_order(
+      grid, vertex_count(), [&](std::size_t v) { return position(v); }, scratch_folder_);
+  find_ray_origins(grid);
 }
 
-SceneIndex::TriangleList SceneIndex::triangle_list() const {
-  TriangleList list;
-  list.positions.reserve(vertex_count());
-  list.indices.reserve(3 * triangle_count());
-  for (const mesh::Primitive& primitive : scene_.primitives) {
-    const auto offset = static_cast<std::uint32_t>(list.positions.size());
-    for (const Vec3& p : primitive.mesh.positions) list.positions.push_back(p - centre_);
-    for (std::uint32_t i : primitive.mesh.indices) list.indices.push_back(i + offset);
-  }
-  return list;
+ray::TriangleSource SceneIndex::triangle_source() const {
+  return {triangle_count(), [this](std::size_t t) {
+            const Place at = triangle_place(t);
+            const mesh::TriangleMesh& mesh = scene_.primitives[at.primitive].mesh;
+            const std::uint32_t* corner = &mesh.indices[3 * at.local];
+            return std::array{mesh.positions[corner[0]] - centre_,
+                              mesh.positions[corner[1]] - centre_,
+                              mesh.positions[corner[2]] - centre_};
+          }};
+}
+
+std::unique_ptr<ray::Engine> SceneIndex::make_embree_engine() const {
+  std::vector<Vec3> positions(vertex_count());
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = position(v);
+  return ray::make_embree_engine({positions, scene_.indices()});
+}
+
+const std::shared_ptr<const ray::WideTree>& SceneIndex::wide_tree() const {
+  std::call_once(wide_tree_once_, [&] {
+    wide_tree_ = std::make_shared<ray::WideTree>(triangle_source(),
+                                                 ray::WideTreeOptions{.folder = scratch_folder_});
+  });
+  return wide_tree_;
 }
 
 const ray::Engine& SceneIndex::engine() const {
-  std::call_once(engine_once_, [&] { engine_ = ray::make_embree_engine(triangle_list().view()); });
+  std::call_once(engine_once_, [&] {
+    engine_ = is_large() ? ray::make_wide_engine(wide_tree()) : make_embree_engine();
+  });
   return *engine_;
 }
 
 const ray::ShadowTree* SceneIndex::shadow_tree() const {
+  if (prefers_engine_) return nullptr;
   std::call_once(shadow_tree_once_,
-                 [&] { shadow_tree_ = std::make_unique<ray::ShadowTree>(triangle_list().view()); });
+                 [&] { shadow_tree_ = std::make_unique<ray::ShadowTree>(wide_tree()); });
   return shadow_tree_.get();
 }
 
 void SceneIndex::build_for_shadow_rays(int ray_count) {
-  if (triangle_count() <= kMostTrianglesPerRay * static_cast<std::size_t>(ray_count)) {
-    shadow_tree();
-  } else {
-    drop_shadow_tree();
+  prefers_engine_ = triangle_count() > kMostTrianglesPerRay * static_cast<std::size_t>(ray_count);
+  if (prefers_engine_) {
     engine();
+  } else {
+    shadow_tree();
   }
 }
 
-void SceneIndex::drop_shadow_tree() {
-  std::call_once(shadow_tree_once_, [] {});
-  shadow_tree_.reset();
+void SceneIndex::find_ray_origins(const SpatialGrid& grid) {
+  MappedArray<Surroundings> around(vertex_count(), scratch_folder_);
+  add_triangles(around);
+  share_between_equals(grid, around);
+  magnitudes_ = MappedArray<float>(vertex_count(), scratch_folder_);
+  ray_origins_ = MappedArray<Vec3>(vertex_count(), scratch_folder_);
+  for_each_trimmed(vertex_count(), [&](std::size_t v) {
+    const Vec4& inward = around[v].inward;
+    const Vec3 n = normal(v);
+    const Vec3 mean = Vec3(inward.x, inward.y, inward.z) / std::max(1.0f, inward.w);
+    Vec3 tangential = mean - n * n.dot(mean);
+    if (tangential.length() < kEdgeShift) tangential = Vec3(0.0f);
+    magnitudes_[v] = around[v].magnitude;
+    ray_origins_[v] = ray::offset_origin(position(v), n + tangential, magnitudes_[v]);
+  });
 }
 
-void SceneIndex::find_ray_origins(std::span<const Vec3> positions,
-                                  std::span<const std::uint32_t> indices) {
-  magnitudes_.assign(positions.size(), 0.0f);
-  std::vector<Vec4> inward(positions.size(), Vec4(0.0f));  // sum of unit vectors, their number
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const std::uint32_t corners[3] = {indices[i], indices[i + 1], indices[i + 2]};
-    const Vec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
+void SceneIndex::add_triangles(MappedArray<Surroundings>& around) const {
+  for_each_trimmed(triangle_count(), [&](std::size_t t) {
+    const std::array<std::uint32_t, 3> corners = triangle(t);
+    const Vec3 a = position(corners[0]), b = position(corners[1]), c = position(corners[2]);
     const Vec3 middle = a / 3.0f + b / 3.0f + c / 3.0f;
     const float largest =
         std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)});
     for (std::uint32_t k : corners) {
-      magnitudes_[k] = std::max(magnitudes_[k], largest);
-      const Vec3 towards = (middle - positions[k]).normalized();
-      inward[k] += Vec4(towards.x, towards.y, towards.z, 1.0f);
+      Surroundings& at = around[k];
+      at.magnitude = std::max(at.magnitude, largest);
+      const Vec3 towards = (middle - position(k)).normalized();
+      at.inward += Vec4(towards.x, towards.y, towards.z, 1.0f);
     }
-  }
-  share_between_equals(positions, inward);
-  ray_origins_.resize(positions.size());
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    const Vec3 n = normal(v);
-    const Vec3 mean = Vec3(inward[v].x, inward[v].y, inward[v].z) / std::max(1.0f, inward[v].w);
-    Vec3 tangential = mean - n * n.dot(mean);
-    if (tangential.length() < kEdgeShift) tangential = Vec3(0.0f);
-    ray_origins_[v] = ray::offset_origin(positions[v], n + tangential, magnitudes_[v]);
-  }
+  });
 }
 
-void SceneIndex::share_between_equals(std::span<const Vec3> positions, std::vector<Vec4>& inward) {
+// Equals lie in one cell of the spatial order: only its runs of vertices in about the same place
+// need sorting, which mostly are single vertices.
+void SceneIndex::share_between_equals(const SpatialGrid& grid,
+                                      MappedArray<Surroundings>& around) const {
   const auto key = [&](std::uint32_t v) {
-    const Vec3 &p = positions[v], &n = normal(v);
+    const Vec3 p = position(v), &n = normal(v);
     return std::array<float, 6>{p.x, p.y, p.z, n.x, n.y, n.z};
   };
-  std::vector<std::uint32_t> sorted(positions.size());
-  std::iota(sorted.begin(), sorted.end(), 0u);
-  std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const auto ka = key(a), kb = key(b);
-    return ka != kb ? ka < kb : a < b;
-  });
-  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    Vec4 sum(0.0f);
-    float largest = 0.0f;
-    for (end = begin; end < sorted.size() && key(sorted[end]) == key(sorted[begin]); ++end) {
-      sum += inward[sorted[end]];
-      largest = std::max(largest, magnitudes_[sorted[end]]);
+  const auto share = [&](std::span<const std::uint32_t> equals) {
+    Surroundings sum;
+    for (const std::uint32_t v : equals) {
+      sum.inward += around[v].inward;
+      sum.magnitude = std::max(sum.magnitude, around[v].magnitude);
     }
-    for (std::size_t i = begin; i < end; ++i) {
-      inward[sorted[i]] = sum;
-      magnitudes_[sorted[i]] = largest;
+    for (const std::uint32_t v : equals) around[v] = sum;
+    trim_mapped_arrays();
+  };
+  const auto cell = [&](std::size_t place) { return grid.cell(position(vertex_order_[place])); };
+  std::vector<std::uint32_t> run;
+  for (std::size_t begin = 0, end = 0; begin < vertex_count(); begin = end) {
+    for (end = begin + 1; end < vertex_count() && cell(end) == cell(begin);) ++end;
+    if (end - begin == 1) continue;
+    run.assign(vertex_order_.begin() + begin, vertex_order_.begin() + end);
+    std::sort(run.begin(), run.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const auto ka = key(a), kb = key(b);
+      return ka != kb ? ka < kb : a < b;
+    });
+    for (std::size_t i = 0, next = 0; i < run.size(); i = next) {
+      for (next = i + 1; next < run.size() && key(run[next]) == key(run[i]);) ++next;
+      if (next - i > 1) share(std::span(run).subspan(i, next - i));
     }
   }
 }

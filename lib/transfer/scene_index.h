@@ -1,24 +1,36 @@
-// A scene's vertices and triangles numbered through, and what traces rays among them.
+// A scene's vertices and triangles numbered through, and what traces rays among them. Of a large
+// scene all that grows with it lies in mapped files (core/mapped_array.h).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
 
+#include "core/mapped_array.h"
+#include "core/spatial_order.h"
 #include "mesh/scene.h"
 #include "ray/engine.h"
 #include "ray/shadow_tree.h"
+#include "ray/wide_tree.h"
 
 namespace prt::transfer {
+
+/// Where what grows with a scene lies.
+struct ScratchOptions {
+  std::filesystem::path folder = std::filesystem::temp_directory_path();
+  std::size_t in_memory_vertices = 750'000;  ///< of more, in nameless files in the folder
+};
 
 class SceneIndex {
  public:
   /// Throws Error (bad_input) on numbers that are not finite or too large to be traced, Error
-  /// (failed) on more than 2^32 - 2 vertices or triangles. The scene must outlive this.
-  explicit SceneIndex(const mesh::Scene& scene);
+  /// (failed) on more than 2^32 - 2 vertices or triangles and when the scratch folder has no room.
+  /// The scene must outlive this.
+  explicit SceneIndex(const mesh::Scene& scene, const ScratchOptions& scratch = {});
 
   struct Place {
     std::size_t primitive;
@@ -28,15 +40,17 @@ class SceneIndex {
   Place triangle_place(std::size_t triangle) const { return place(triangle_offsets_, triangle); }
 
   const mesh::Scene& scene() const { return scene_; }
-  /// For hits; built when first asked for, which threads should not be the first to do.
+  /// For hits, and for shadow rays where there is no shadow tree; built when first asked for, which
+  /// threads should not be the first to do. Embree's, or that of large scenes (ray/wide_engine.h).
   const ray::Engine& engine() const;
-  /// For shadow rays; built in the same way. Null after drop_shadow_tree: the engine then serves.
+  /// For shadow rays; built in the same way. Null where the engine is faster.
   const ray::ShadowTree* shadow_tree() const;
   /// Builds what answers so many rays a vertex fastest: the shadow tree, or, where its beams would
   /// be wide for so many triangles, the engine.
   void build_for_shadow_rays(int ray_count);
-  /// Gives the shadow tree's memory back, some 100 bytes a vertex, for good.
-  void drop_shadow_tree();
+  /// Whether what grows with the scene is to lie in files, and in which folder; empty: in memory.
+  bool is_large() const { return !scratch_folder_.empty(); }
+  const std::filesystem::path& scratch_folder() const { return scratch_folder_; }
   std::size_t vertex_count() const { return vertex_offsets_.back(); }
   std::size_t triangle_count() const { return triangle_offsets_.back(); }
   const Vec3& normal(std::size_t vertex) const;
@@ -53,28 +67,32 @@ class SceneIndex {
   /// Vertices of a triangle, numbered through.
   std::array<std::uint32_t, 3> triangle(std::size_t triangle) const;
   /// Vertices in an order that keeps neighbours together.
-  const std::vector<std::uint32_t>& vertex_order() const { return vertex_order_; }
+  std::span<const std::uint32_t> vertex_order() const { return vertex_order_; }
 
  private:
-  void find_ray_origins(std::span<const Vec3> positions, std::span<const std::uint32_t> indices);
-  void share_between_equals(std::span<const Vec3> positions, std::vector<Vec4>& inward);
-  static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
-
-  struct TriangleList {
-    std::vector<Vec3> positions;  ///< relative to the centre
-    std::vector<std::uint32_t> indices;
-
-    ray::Triangles view() const { return {positions, indices}; }
+  /// Sums over the triangles around a vertex.
+  struct Surroundings {
+    Vec4 inward{0.0f};  ///< of unit vectors to their middles, and how many
+    float magnitude = 0.0f;
   };
-  TriangleList triangle_list() const;
+  void find_ray_origins(const SpatialGrid& grid);
+  void add_triangles(MappedArray<Surroundings>& around) const;
+  void share_between_equals(const SpatialGrid& grid, MappedArray<Surroundings>& around) const;
+  static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
+  ray::TriangleSource triangle_source() const;
+  std::unique_ptr<ray::Engine> make_embree_engine() const;
+  const std::shared_ptr<const ray::WideTree>& wide_tree() const;
 
   const mesh::Scene& scene_;
   std::vector<std::size_t> vertex_offsets_, triangle_offsets_;
   Vec3 centre_{0.0f};
-  std::vector<float> magnitudes_;
-  std::vector<Vec3> ray_origins_;
-  std::vector<std::uint32_t> vertex_order_;
-  mutable std::once_flag engine_once_, shadow_tree_once_;
+  std::filesystem::path scratch_folder_;
+  MappedArray<float> magnitudes_;
+  MappedArray<Vec3> ray_origins_;
+  MappedArray<std::uint32_t> vertex_order_;
+  bool prefers_engine_ = false;  // for shadow rays
+  mutable std::once_flag wide_tree_once_, engine_once_, shadow_tree_once_;
+  mutable std::shared_ptr<const ray::WideTree> wide_tree_;
   mutable std::unique_ptr<ray::Engine> engine_;
   mutable std::unique_ptr<ray::ShadowTree> shadow_tree_;
 };

@@ -98,22 +98,6 @@ Expected plain_closest(const Soup& soup, const Ray& ray) {
   return best;
 }
 
-/// Rays of one direction from neighbouring points.
-std::vector<Ray> parallel_rays(std::size_t count, std::uint64_t seed) {
-  Pcg32 random(seed);
-  std::vector<Ray> rays(count);
-  Vec3 centre(0.0f), direction(0.0f);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % 40 == 0) {
-      centre = random_point(random, 1.0f);
-      direction = random_direction(random);
-    }
-    rays[i].origin = centre + random_point(random, 0.05f);
-    rays[i].direction = direction;
-  }
-  return rays;
-}
-
 void expect_agrees_with_plain(const Engine& engine, const Soup& soup,
                               const std::vector<Ray>& rays) {
   std::vector<Hit> hits(rays.size());

@@ -83,6 +83,22 @@ inline std::vector<Ray> random_rays(std::size_t count, std::uint64_t seed) {
   return rays;
 }
 
+/// Rays of one direction from neighbouring points.
+inline std::vector<Ray> parallel_rays(std::size_t count, std::uint64_t seed) {
+  Pcg32 random(seed);
+  std::vector<Ray> rays(count);
+  Vec3 centre(0.0f), direction(0.0f);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 40 == 0) {
+      centre = random_point(random, 1.0f);
+      direction = random_direction(random);
+    }
+    rays[i].origin = centre + random_point(random, 0.05f);
+    rays[i].direction = direction;
+  }
+  return rays;
+}
+
 /// scale × positions + translation.
 inline Soup transformed(Soup soup, float scale, const Vec3& translation) {
   for (Vec3& p : soup.positions) p = p * scale + translation;

@@ -1,11 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "transfer/clamped_cosine.h"
 #include "transfer/directions.h"
 #include "transfer/scenes.h"
-#include "transfer/spatial_order.h"
 
 namespace prt::transfer {
 namespace {
@@ -43,15 +40,6 @@ TEST(Directions, FollowFromTheSeedAndKeepNeighboursTogether) {
   for (std::size_t d = 1; d < a.count(); ++d) step += (a[d] - a[d - 1]).length();
   const double spacing = std::sqrt(4.0 * std::numbers::pi / 4096.0);
   EXPECT_LT(step / 4096.0, 2.5 * spacing);
-}
-
-TEST(SpatialOrder, IsAPermutationAndTakesAnyInput) {
-  EXPECT_TRUE(spatial_order({}).empty());
-  const std::vector<Vec3> same(5, Vec3(3.0f));
-  EXPECT_EQ(spatial_order(same), (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
-  const TriangleMesh mesh = sphere(3);
-  const std::vector<std::uint32_t> order = spatial_order(mesh.positions);
-  EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), mesh.positions.size());
 }
 
 TEST(ClampedCosine, IsTheIntegralOverTheHemisphere) {

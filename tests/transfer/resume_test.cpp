@@ -72,6 +72,18 @@ TEST_F(ResumeTest, ContinuesInTheMiddleOfTheBounces) {
   }
 }
 
+TEST_F(ResumeTest, ContinuesALargeScene) {
+  options_.scratch = {.folder = folder_.path(), .in_memory_vertices = 0};
+  fs::remove(path_);
+  DiffuseOptions plain = options_;
+  plain.checkpoint = {};
+  DiffuseStats stats;
+  expected_ = compute_diffuse(scene_, plain, stats);
+  bake(options_);
+  kept_ = read_text_file(path_);
+  for (const std::size_t cut : {0u, 50u, 200'000u}) bake(kept_.substr(0, kept_.size() - cut));
+}
+
 TEST_F(ResumeTest, DamageIsComputedAnew) {
   for (std::size_t at = 100; at < kept_.size(); at += kept_.size() / 20) {
     std::string damaged = kept_;

@@ -197,30 +197,46 @@ TEST(Shadow, RefusesBadOptionsNormalsAndColours) {
   EXPECT_EQ(kind_of(bad, {}), ErrorKind::bad_input);
 }
 
-TEST(Hemisphere, AnswersAlikeWithoutTheShadowTree) {
+TEST(Hemisphere, AnswersAlikeWhateverTraces) {
   TriangleMesh mesh = sphere(3);
   for (Vec3& p : mesh.positions) p.y += 1.2f;
   append(mesh, grid(Vec3(-3, 0, -3), Vec3(0, 0, 6), Vec3(6, 0, 0), 8));
   const mesh::Scene scene = scene_of(mesh);
-  SceneIndex with(scene), without(scene);
-  with.shadow_tree();
-  without.drop_shadow_tree();
+  const ScratchOptions in_files{.in_memory_vertices = 0};
+  SceneIndex small(scene), few_rays(scene), large(scene, in_files), large_few_rays(scene, in_files);
+  small.build_for_shadow_rays(1000);
+  large.build_for_shadow_rays(1000);
+  few_rays.build_for_shadow_rays(1);
+  large_few_rays.build_for_shadow_rays(1);
+  EXPECT_NE(large.shadow_tree(), nullptr);
+  EXPECT_EQ(few_rays.shadow_tree(), nullptr);
+  EXPECT_EQ(large_few_rays.shadow_tree(), nullptr);
   const Directions directions = make_directions(1000, 3);
-  Hemisphere fast(with, directions), slow(without, directions);
-  std::size_t blocked_count = 0, difference = 0;
-  for (std::size_t v = 0; v < with.vertex_count(); v += 7) {
-    fast.trace(v);
-    slow.trace(v);
-    blocked_count += fast.blocked().size();
-    for (std::size_t i = 0, k = 0; i < fast.blocked().size(); ++i) {
-      while (k < slow.blocked().size() && slow.blocked()[k].row < fast.blocked()[i].row) ++k;
-      difference += k == slow.blocked().size() || slow.blocked()[k].row != fast.blocked()[i].row;
+  Hemisphere expected(small, directions);
+  for (const SceneIndex* index : {&few_rays, &large, &large_few_rays}) {
+    Hemisphere other(*index, directions);
+    std::size_t blocked_count = 0, hit_count = 0, difference = 0;
+    for (std::size_t v = 0; v < small.vertex_count(); v += 7) {
+      EXPECT_EQ(index->ray_origin(v), small.ray_origin(v));
+      EXPECT_EQ(index->magnitude(v), small.magnitude(v));
+      expected.trace(v);
+      other.trace(v);
+      blocked_count += expected.blocked().size();
+      for (std::size_t i = 0, k = 0; i < expected.blocked().size(); ++i) {
+        while (k < other.blocked().size() && other.blocked()[k].row < expected.blocked()[i].row) {
+          ++k;
+        }
+        difference +=
+            k == other.blocked().size() || other.blocked()[k].row != expected.blocked()[i].row;
+      }
+      EXPECT_NEAR(static_cast<double>(expected.visible().size()),
+                  static_cast<double>(other.visible().size()), 1.0);
+      for (const ray::Hit& hit : other.hits()) hit_count += hit.triangle != ray::kNoHit;
     }
-    EXPECT_NEAR(static_cast<double>(fast.visible().size()),
-                static_cast<double>(slow.visible().size()), 1.0);
+    EXPECT_GT(blocked_count, 1000u);
+    EXPECT_LE(difference, blocked_count / 1000);  // rays along edges
+    EXPECT_GE(hit_count, blocked_count - blocked_count / 1000);
   }
-  EXPECT_GT(blocked_count, 1000u);
-  EXPECT_LE(difference, blocked_count / 1000);  // rays along edges
 }
 
 }  // namespace
