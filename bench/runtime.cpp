@@ -51,16 +51,18 @@ Model make_bench_model(int row_count, int channel_count) {
   return make_model(scene, transfer, std::move(signal));
 }
 
+constexpr ExitOptions kUsual;
+
 enum Light { still, turning };
 
 void draw_frames(benchmark::State& state, int row_count, int channel_count, Draw draw, Light light,
-                 bool superclusters = true, Passes passes = Passes::automatic, int size = kSize) {
+                 bool superclusters = true, ExitOptions exit = {}, int size = kSize) {
   const gl::HeadlessContext context;
   Model model = make_bench_model(row_count, channel_count);
   if (draw == Draw::uncompressed && !model.signal) return state.SkipWithError("no transfer");
   if (!superclusters) model.transfer->first_clusters.clear();
   Renderer renderer;
-  renderer.set_model(model, passes);
+  renderer.set_model(model, exit);
   renderer.set_lighting(lighting_from(test_light(kBandCount)));
   View view;
   view.camera = camera::frame(model.bounds, 40, 1);
@@ -86,19 +88,20 @@ DRAW_FRAMES(diffuse_single, 1, 3, Draw::single, still);
 DRAW_FRAMES(diffuse_clusters, 1, 3, Draw::clusters, still, false);
 DRAW_FRAMES(diffuse_superclusters, 1, 3, Draw::clusters, still);
 DRAW_FRAMES(diffuse_uncompressed, 1, 3, Draw::uncompressed, still);
-DRAW_FRAMES(diffuse_single_vertices, 1, 3, Draw::single, still, true, Passes::automatic, 4);
-DRAW_FRAMES(diffuse_uncompressed_vertices, 1, 3, Draw::uncompressed, still, true, Passes::automatic,
-            4);
+DRAW_FRAMES(diffuse_single_vertices, 1, 3, Draw::single, still, true, kUsual, 4);
+DRAW_FRAMES(diffuse_uncompressed_vertices, 1, 3, Draw::uncompressed, still, true, kUsual, 4);
 DRAW_FRAMES(diffuse_single_turning, 1, 3, Draw::single, turning);
 DRAW_FRAMES(diffuse_uncompressed_turning, 1, 3, Draw::uncompressed, turning);
 DRAW_FRAMES(glossy_single, 24, 3, Draw::single, still);
-DRAW_FRAMES(glossy_single_per_channel, 24, 3, Draw::single, still, true, Passes::per_channel);
+DRAW_FRAMES(glossy_single_per_channel, 24, 3, Draw::single, still, true,
+            ExitOptions{.passes = Passes::per_channel});
+DRAW_FRAMES(glossy_single_map, 24, 3, Draw::single, still, true,
+            ExitOptions{.view_basis = ViewBasis::map});
 DRAW_FRAMES(glossy_clusters, 24, 3, Draw::clusters, still, false);
 DRAW_FRAMES(glossy_superclusters, 24, 3, Draw::clusters, still);
 DRAW_FRAMES(glossy_uncompressed, 24, 3, Draw::uncompressed, still);
-DRAW_FRAMES(glossy_single_vertices, 24, 3, Draw::single, still, true, Passes::automatic, 4);
-DRAW_FRAMES(glossy_uncompressed_vertices, 24, 3, Draw::uncompressed, still, true, Passes::automatic,
-            4);
+DRAW_FRAMES(glossy_single_vertices, 24, 3, Draw::single, still, true, kUsual, 4);
+DRAW_FRAMES(glossy_uncompressed_vertices, 24, 3, Draw::uncompressed, still, true, kUsual, 4);
 DRAW_FRAMES(glossy_single_turning, 24, 3, Draw::single, turning);
 DRAW_FRAMES(glossy_uncompressed_turning, 24, 3, Draw::uncompressed, turning);
 

@@ -44,11 +44,13 @@ int choose_pass_count(Passes passes, int row_count, int vector_count, const gl::
                                                   "components."});
 }
 
-ExitStage::ExitStage(const Model& model, Passes passes) : layout_(make_layout(model, passes)) {
+ExitStage::ExitStage(const Model& model, const ExitOptions& options)
+    : layout_(make_layout(model, options.passes)), view_basis_(options.view_basis) {
   if (!layout_.is_glossy()) return;
   normals_ = gl::Buffer(std::span(model.normals));
   tangents_ = gl::Buffer(std::span(model.tangents));
-  functions_ = gl::TextureArray(kHemisphereMapSize, hemisphere_map(layout_));
+  if (view_basis_ == ViewBasis::map)
+    functions_ = gl::TextureArray(kHemisphereMapSize, hemisphere_map(layout_));
 }
 
 unsigned int ExitStage::end_location() const {
@@ -68,6 +70,8 @@ gl::Defines ExitStage::defines() const {
       {"GLOSSY 1", fmt::format("PASS_COLOR_COUNT {}", layout_.pass_color_count()),
        fmt::format("COLOR_VECTOR_COUNT {}", layout_.color_vector_count()),
        fmt::format("BAND_COUNT {}", layout_.band_count), "FOR_EACH_VECTOR(F) " + vectors});
+  if (view_basis_ == ViewBasis::polynomial)
+    defines.push_back("FOR_EACH_FUNCTIONS(F) " + basis_polynomials(layout_));
   return defines;
 }
 
@@ -87,6 +91,7 @@ void ExitStage::bind(const gl::Program& program, const Viewpoint& viewpoint) con
   program.set("u_eye", viewpoint.eye);
   program.set("u_right", viewpoint.right);
   program.set("u_backward", viewpoint.backward);
+  if (view_basis_ != ViewBasis::map) return;
   program.set("u_functions", kFunctionsUnit);
   functions_.bind(kFunctionsUnit);
 }

@@ -9,12 +9,19 @@
 #include "runtime/draw_calls.h"
 #include "runtime/exit_layout.h"
 #include "runtime/model.h"
+#include "runtime/view_basis.h"
 
 namespace prt::runtime {
 
 /// Passes that glossy transfer is drawn in: as few as the context can, all colours in one, or one
 /// for each colour. Diffuse transfer always takes one.
 enum class Passes { automatic, one, per_channel };
+
+/// How glossy transfer is drawn; the pixels are the same.
+struct ExitOptions {
+  Passes passes = Passes::automatic;
+  ViewBasis view_basis = ViewBasis::polynomial;
+};
 
 /// 1 or 3. A pass needs its vec4 of exit values and the view as varyings, and of a cluster's
 /// constants, `vector_count` + 1 (0: not compressed), those vec4 as uniforms. Throws Error (failed)
@@ -30,7 +37,7 @@ class ExitStage {
   static constexpr unsigned int kFirstLocation = 14;
 
   /// Throws Error (failed), see choose_pass_count.
-  ExitStage(const Model& model, Passes passes);
+  ExitStage(const Model& model, const ExitOptions& options);
 
   const ExitLayout& layout() const { return layout_; }
   /// Attribute locations below this are free.
@@ -44,7 +51,8 @@ class ExitStage {
  private:
   ExitLayout layout_;
   gl::Buffer normals_, tangents_;
-  gl::TextureArray functions_;
+  ViewBasis view_basis_;
+  gl::TextureArray functions_;  // of a map
 };
 
 }  // namespace prt::runtime

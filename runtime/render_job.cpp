@@ -97,7 +97,7 @@ void render(const RenderOptions& options, Report& report) {
   report.json()["opengl"] = gl::description();
   stage.emplace(report, "upload");
   Renderer renderer;
-  renderer.set_model(model, options.passes);
+  renderer.set_model(model, options.exit);
   report.json()["pass_count"] = renderer.pass_count();
   renderer.check_can_draw(view.draw, view.show);
   renderer.set_lighting(lighting);

@@ -82,13 +82,13 @@ std::vector<Vec3> error_colors(const Model& model) {
 }  // namespace
 
 struct Renderer::Drawings {
-  Drawings(const Model& model, Passes passes)
+  Drawings(const Model& model, const ExitOptions& options)
       : bounds(model.bounds),
         band_count(model.band_count()),
         grid(box_of(model.positions)),
         positions(std::span(model.positions)),
         indices(std::span(model.indices)),
-        exit(model, passes),
+        exit(model, options),
         black(model.indices.size(), positions, indices) {
     if (model.transfer) {
       compressed.emplace(model, exit, positions, indices);
@@ -166,8 +166,8 @@ Renderer::Renderer(gl::Format float_format)
 
 Renderer::~Renderer() = default;
 
-void Renderer::set_model(const Model& model, Passes passes) {
-  drawings_ = std::make_unique<Drawings>(model, passes);
+void Renderer::set_model(const Model& model, const ExitOptions& options) {
+  drawings_ = std::make_unique<Drawings>(model, options);
   update_light();
 }
 

@@ -44,9 +44,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Takes the place of the model before; that one stays when this throws. `passes`: of glossy
-  /// transfer.
-  void set_model(const Model& model, Passes passes = Passes::automatic);
+  /// Takes the place of the model before; that one stays when this throws.
+  void set_model(const Model& model, const ExitOptions& options = {});
   /// Light and background.
   void set_lighting(const Lighting& lighting);
   /// Turns light and background; the light of set_lighting is what is turned.

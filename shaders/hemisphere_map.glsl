@@ -8,8 +8,6 @@ struct MapPlace {
   vec2 share;      // of the fetches at `high`
 };
 
-// Directions below the horizon, at outlines where interpolated normals turn away from the eye, are
-// moved to the rim: the functions go on below it, but nothing is known there.
 MapPlace map_place(vec3 direction) {
   vec2 p = direction.xy / max(direction.z > 0.0 ? 1.0 + direction.z : length(direction.xy), 1e-6);
   float size = float(textureSize(u_functions, 0).x);
@@ -28,4 +26,9 @@ vec4 functions_at(MapPlace place, float layer) {
              mix(texture(u_functions, vec3(a.x, b.y, layer)),
                  texture(u_functions, vec3(b, layer)), place.share.x),
              place.share.y);
+}
+
+void functions_towards(vec3 direction, out vec4 y[COLOR_VECTOR_COUNT]) {
+  MapPlace place = map_place(direction);
+  for (int j = 0; j < COLOR_VECTOR_COUNT; ++j) y[j] = functions_at(place, float(j));
 }

@@ -20,11 +20,14 @@ using prt::runtime::Draw;
 using prt::runtime::Passes;
 using prt::runtime::PictureOptions;
 using prt::runtime::Show;
+using prt::runtime::ViewBasis;
 
 const std::map<std::string, Draw> kDraws = {
     {"single", Draw::single}, {"clusters", Draw::clusters}, {"uncompressed", Draw::uncompressed}};
 const std::map<std::string, Passes> kPasses = {
     {"auto", Passes::automatic}, {"one", Passes::one}, {"per-channel", Passes::per_channel}};
+const std::map<std::string, ViewBasis> kViewBases = {{"polynomial", ViewBasis::polynomial},
+                                                     {"map", ViewBasis::map}};
 const std::map<std::string, Show> kShows = {{"radiance", Show::radiance},
                                             {"clusters", Show::clusters},
                                             {"superclusters", Show::superclusters},
@@ -69,8 +72,10 @@ void add_render_options(prt::cli::Options& app, prt::runtime::RenderOptions& opt
       "--draw", options.draw, kDraws,
       "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
       "with --transfer]");
-  app.add_choice("--passes", options.passes, kPasses,
+  app.add_choice("--passes", options.exit.passes, kPasses,
                  "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
+  app.add_choice("--view-basis", options.exit.view_basis, kViewBases,
+                 "Of glossy transfer: evaluated, or from a map of the hemisphere [polynomial]");
   prt::add_near_lights(app, options.near_lights, options.grid_size);
   app.add_choice("--show", options.show, kShows, "What to show [radiance]");
   app.add_option("--antialias", options.sample_count,
@@ -102,8 +107,8 @@ void add_reference_options(prt::cli::Options& app, prt::runtime::ReferenceOption
   app.add_option("--noise-output", options.noise,
                  "Write the standard error of each pixel too (.exr), for prt-inspect --noise")
       ->needs(flag);
-  for (const char* name : {"--transfer", "--draw", "--passes", "--show", "--point-light",
-                           "--sphere-light", "--light-grid"})
+  for (const char* name : {"--transfer", "--draw", "--passes", "--view-basis", "--show",
+                           "--point-light", "--sphere-light", "--light-grid"})
     flag->excludes(app.get(name));
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/glossy_models.h"
 #include "runtime/hemisphere_map.h"
 #include "runtime/shading.h"
+#include "runtime/view_basis.h"
 #include "sh/hemisphere.h"
 
 namespace prt::runtime {
@@ -146,6 +147,33 @@ TEST(HemisphereMap, GivesTheFunctionsOfFiveBandsToAThousandth) {
   RecordProperty("worst", std::to_string(worst));
   EXPECT_LT(worst, 1e-3f);
   EXPECT_LT(std::sqrt(square / (25 * kCount)), 1e-4);
+}
+
+TEST(ViewBasis, PolynomialsAreTheFunctions) {
+  constexpr int kBandCount = 8;
+  std::vector<double> basis(kBandCount * kBandCount);
+  for (const double z : {0.0, 0.1, 0.5, 0.9, 1.0}) {
+    const double x = std::sqrt(1 - z * z);  // y = 0: Re (x + iy)^m = x^m
+    sh::evaluate(kBandCount, x, 0.0, z, basis);
+    for (int l = 0; l < kBandCount; ++l)
+      for (int m = 0; m <= l; ++m) {
+        const std::vector<double> factors = polynomial_of_z(l, m);
+        ASSERT_EQ(factors.size(), static_cast<std::size_t>(l - m) + 1);
+        double sum = 0;
+        for (std::size_t i = 0; i < factors.size(); ++i) sum += factors[i] * std::pow(z, i);
+        const auto index = static_cast<std::size_t>(sh::coefficient_index(l, m));
+        EXPECT_NEAR(sum * std::pow(x, m), basis[index], 1e-12) << l << " " << m;
+      }
+  }
+}
+
+TEST(ViewBasis, WritesFunctionsBySlotAndZerosBehindThem) {
+  EXPECT_EQ(basis_polynomials(exit_layout(3, 1)),
+            "F(0, vec4(-0.488602512 * p[1], 0.282094792, 0.0)) ");
+  EXPECT_EQ(basis_polynomials(exit_layout(9, 1)),
+            "F(0, vec4(-0.488602512 * p[1], z * -1.09254843 * p[1])) "
+            "F(1, vec4(0.546274215 * p[2], 0.282094792, z * 0.488602512)) "
+            "F(2, vec4((-0.315391565 + zz * 0.946174696), 0.0, 0.0, 0.0)) ");
 }
 
 TEST(Shading, ExitRadianceBelowTheHorizonIsThatOfTheRim) {

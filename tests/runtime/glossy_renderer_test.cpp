@@ -24,8 +24,8 @@ class GlossyOnEveryApi : public testing::TestWithParam<gl::Api> {
   gl::HeadlessContext context_{{.api = GetParam()}};
   Renderer renderer_;
 
-  void load(const Model& model, const sh::Light& light, Passes passes = Passes::automatic) {
-    renderer_.set_model(model, passes);
+  void load(const Model& model, const sh::Light& light, const ExitOptions& options = {}) {
+    renderer_.set_model(model, options);
     renderer_.set_lighting(lighting_from(light));
   }
   image::Image render(const Model& model, Draw draw, int samples = 1) {
@@ -45,13 +45,13 @@ TEST_P(GlossyOnEveryApi, EveryWayOfDrawingGivesTheSamePixels) {
        {with_superclusters(random_transfer(vertices, 4, 1, 40, 5, 9), 1000),
         with_superclusters(random_adaptive_transfer(vertices, 4, 3, 40, 4, 24), 6)}) {
     const Model model = make_model(scene, dimmed(transfer), {});
-    load(model, light, Passes::one);
+    load(model, light, {.passes = Passes::one});
     EXPECT_EQ(renderer_.pass_count(), 1);
     const image::Image expected = render(model, Draw::single);
     EXPECT_LT(largest_difference(expected, render(model, Draw::clusters)), 1 / 255.0f);
     EXPECT_LT(largest_difference(render(model, Draw::single, 4), render(model, Draw::clusters, 4)),
               1 / 255.0f);
-    load(model, light, Passes::per_channel);
+    load(model, light, {.passes = Passes::per_channel});
     EXPECT_EQ(renderer_.pass_count(), 3);
     EXPECT_LT(largest_difference(expected, render(model, Draw::single)), 1e-4f);
     EXPECT_LT(largest_difference(expected, render(model, Draw::clusters)), 1 / 255.0f);
@@ -67,8 +67,9 @@ TEST_P(GlossyOnEveryApi, PixelsAgreeWithTheCpuTwin) {
         random_adaptive_transfer(scene.vertex_count(), 3, 3, 50, 6, row_count), 9));
     const Model model = make_model(scene, transfer, decompressed(transfer));
     const sh::Light light = test_light(3);
-    for (const Passes passes : {Passes::one, Passes::per_channel}) {
-      load(model, light, passes);
+    for (const ExitOptions& options :
+         {ExitOptions{Passes::one, ViewBasis::polynomial}, {Passes::per_channel, ViewBasis::map}}) {
+      load(model, light, options);
       for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed})
         expect_cpu_pixels(model, draw, light, render(model, draw));
     }
@@ -84,8 +85,22 @@ TEST_P(GlossyOnEveryApi, NormalsThatTurnAwayShowTheRim) {
   const auto transfer = dimmed(random_transfer(scene.vertex_count(), 3, 1, 50, 4, 16));
   const Model model = make_model(scene, transfer, {});
   const sh::Light light = test_light(3);
-  load(model, light);
-  expect_cpu_pixels(model, Draw::single, light, render(model, Draw::single));
+  for (const ViewBasis basis : {ViewBasis::polynomial, ViewBasis::map}) {
+    load(model, light, {.view_basis = basis});
+    expect_cpu_pixels(model, Draw::single, light, render(model, Draw::single));
+  }
+}
+
+TEST_P(GlossyOnEveryApi, MapAndPolynomialsAgree) {
+  const mesh::Scene scene = scene_of({with_random_tangents(torus(40, 20))});
+  for (const int row_count : {3, 16, 25, 36}) {
+    const auto transfer = dimmed(random_transfer(scene.vertex_count(), 2, 1, 9, 2, row_count));
+    const Model model = make_model(scene, transfer, {});
+    load(model, test_light(2), {.view_basis = ViewBasis::map});
+    const image::Image expected = render(model, Draw::single);
+    load(model, test_light(2));
+    EXPECT_LT(largest_difference(expected, render(model, Draw::single)), 1 / 255.0f) << row_count;
+  }
 }
 
 TEST_P(GlossyOnEveryApi, FramesThatDisagreeLeaveNoSeams) {
