@@ -28,15 +28,15 @@ std::filesystem::path given_model, given_transfer;  // of the command line
 
 /// Clusters of neighbouring vertices, as a bake makes them, rather than scattered ones. The
 /// uncompressed signal is some signal of the same shape.
-Model make_bench_model(int row_count, int channel_count) {
+Model make_bench_model(int row_count, int channel_count, std::uint32_t ring_count = 264) {
   if (!given_model.empty()) return load_model(given_model, given_transfer);
-  const mesh::Scene scene = scene_of({torus(264, 132)});
+  const mesh::Scene scene = scene_of({torus(ring_count, 132)});
   gltf::PrecomputedTransfer transfer = random_transfer(
       scene.vertex_count(), kBandCount, channel_count, kClusterCount, kComponentCount, row_count);
   for (std::size_t p = 0; p < scene.vertex_count(); ++p) {
     const std::size_t ring = p / 132, side = p % 132;
     transfer.encoding.cluster_of_point[p] =
-        static_cast<std::uint32_t>(ring * 16 / 264 * 16 + side * 16 / 132);
+        static_cast<std::uint32_t>(ring * 16 / ring_count * 16 + side * 16 / 132);
   }
   transfer.first_clusters = cpca::sort_clusters(
       cpca::find_superclusters(scene.indices(), transfer.encoding.cluster_of_point,
@@ -51,59 +51,73 @@ Model make_bench_model(int row_count, int channel_count) {
   return make_model(scene, transfer, std::move(signal));
 }
 
-constexpr ExitOptions kUsual;
+/// How frames are drawn; with `turning` every frame has another light.
+struct Frames {
+  Draw draw = Draw::single;
+  Sums sums = Sums::every_frame;
+  bool turning = false;
+  int size = kSize;
+  ExitOptions exit{};
+  bool superclusters = true;
+  std::uint32_t ring_count = 264;  // of 132 vertices
+};
 
-enum Light { still, turning };
-
-void draw_frames(benchmark::State& state, int row_count, int channel_count, Draw draw, Light light,
-                 bool superclusters = true, ExitOptions exit = {}, int size = kSize) {
+void draw_frames(benchmark::State& state, int row_count, const Frames& frames) {
   const gl::HeadlessContext context;
-  Model model = make_bench_model(row_count, channel_count);
-  if (draw == Draw::uncompressed && !model.signal) return state.SkipWithError("no transfer");
-  if (!superclusters) model.transfer->first_clusters.clear();
+  Model model = make_bench_model(row_count, 3, frames.ring_count);
+  if (frames.draw == Draw::uncompressed && !model.signal) return state.SkipWithError("no transfer");
+  if (!frames.superclusters) model.transfer->first_clusters.clear();
   Renderer renderer;
-  renderer.set_model(model, exit);
+  renderer.set_model(model, frames.exit);
   renderer.set_lighting(lighting_from(test_light(kBandCount)));
   View view;
   view.camera = camera::frame(model.bounds, 40, 1);
-  view.draw = draw;
-  renderer.draw(view, size, size, 1);
+  view.draw = frames.draw;
+  view.sums = frames.sums;
+  renderer.draw(view, frames.size, frames.size, 1);
   gl::finish();
   float degrees = 0;
   for (auto _ : state) {
-    if (light == turning) renderer.set_light_rotation(light_rotation(degrees += 1));
-    renderer.draw(view, size, size, 1);
+    if (frames.turning) renderer.set_light_rotation(light_rotation(degrees += 1));
+    renderer.draw(view, frames.size, frames.size, 1);
     gl::finish();
   }
   state.SetItemsProcessed(state.iterations());
   state.SetLabel(gl::description());
 }
 
-#define DRAW_FRAMES(name, ...)                      \
-  BENCHMARK_CAPTURE(draw_frames, name, __VA_ARGS__) \
-      ->MeasureProcessCPUTime()                     \
-      ->UseRealTime()                               \
+#define DRAW_FRAMES(name, row_count, ...)                               \
+  BENCHMARK_CAPTURE(draw_frames, name, row_count, (Frames __VA_ARGS__)) \
+      ->MeasureProcessCPUTime()                                         \
+      ->UseRealTime()                                                   \
       ->Unit(benchmark::kMillisecond)
-DRAW_FRAMES(diffuse_single, 1, 3, Draw::single, still);
-DRAW_FRAMES(diffuse_clusters, 1, 3, Draw::clusters, still, false);
-DRAW_FRAMES(diffuse_superclusters, 1, 3, Draw::clusters, still);
-DRAW_FRAMES(diffuse_uncompressed, 1, 3, Draw::uncompressed, still);
-DRAW_FRAMES(diffuse_single_vertices, 1, 3, Draw::single, still, true, kUsual, 4);
-DRAW_FRAMES(diffuse_uncompressed_vertices, 1, 3, Draw::uncompressed, still, true, kUsual, 4);
-DRAW_FRAMES(diffuse_single_turning, 1, 3, Draw::single, turning);
-DRAW_FRAMES(diffuse_uncompressed_turning, 1, 3, Draw::uncompressed, turning);
-DRAW_FRAMES(glossy_single, 24, 3, Draw::single, still);
-DRAW_FRAMES(glossy_single_per_channel, 24, 3, Draw::single, still, true,
-            ExitOptions{.passes = Passes::per_channel});
-DRAW_FRAMES(glossy_single_map, 24, 3, Draw::single, still, true,
-            ExitOptions{.view_basis = ViewBasis::map});
-DRAW_FRAMES(glossy_clusters, 24, 3, Draw::clusters, still, false);
-DRAW_FRAMES(glossy_superclusters, 24, 3, Draw::clusters, still);
-DRAW_FRAMES(glossy_uncompressed, 24, 3, Draw::uncompressed, still);
-DRAW_FRAMES(glossy_single_vertices, 24, 3, Draw::single, still, true, kUsual, 4);
-DRAW_FRAMES(glossy_uncompressed_vertices, 24, 3, Draw::uncompressed, still, true, kUsual, 4);
-DRAW_FRAMES(glossy_single_turning, 24, 3, Draw::single, turning);
-DRAW_FRAMES(glossy_uncompressed_turning, 24, 3, Draw::uncompressed, turning);
+#define DRAW_FRAMES_OF(kind, row_count)                                                          \
+  DRAW_FRAMES(kind##_single, row_count, {});                                                     \
+  DRAW_FRAMES(kind##_single_vertices, row_count, {.size = 4});                                   \
+  DRAW_FRAMES(kind##_single_turning, row_count, {.turning = true});                              \
+  DRAW_FRAMES(kind##_kept, row_count, {.sums = Sums::kept});                                     \
+  DRAW_FRAMES(kind##_kept_vertices, row_count, {.sums = Sums::kept, .size = 4});                 \
+  DRAW_FRAMES(kind##_kept_turning, row_count, {.sums = Sums::kept, .turning = true});            \
+  DRAW_FRAMES(kind##_uncompressed, row_count, {.draw = Draw::uncompressed});                     \
+  DRAW_FRAMES(kind##_uncompressed_vertices, row_count, {.draw = Draw::uncompressed, .size = 4}); \
+  DRAW_FRAMES(kind##_uncompressed_turning, row_count,                                            \
+              {.draw = Draw::uncompressed, .turning = true});                                    \
+  DRAW_FRAMES(kind##_uncompressed_kept, row_count,                                               \
+              {.draw = Draw::uncompressed, .sums = Sums::kept});                                 \
+  DRAW_FRAMES(kind##_uncompressed_kept_turning, row_count,                                       \
+              {.draw = Draw::uncompressed, .sums = Sums::kept, .turning = true});                \
+  DRAW_FRAMES(kind##_clusters, row_count, {.draw = Draw::clusters, .superclusters = false});     \
+  DRAW_FRAMES(kind##_superclusters, row_count, {.draw = Draw::clusters})
+DRAW_FRAMES_OF(diffuse, 1);
+DRAW_FRAMES_OF(glossy, 24);
+DRAW_FRAMES(glossy_single_per_channel, 24, {.exit = {.passes = Passes::per_channel}});
+DRAW_FRAMES(glossy_single_map, 24, {.exit = {.view_basis = ViewBasis::map}});
+// Nearly the most vertices whose matrices a texture of 16384² holds, 532 MB.
+DRAW_FRAMES(large_single_vertices, 24, {.size = 4, .ring_count = 560});
+DRAW_FRAMES(large_kept_vertices_turning, 24,
+            {.sums = Sums::kept, .turning = true, .size = 4, .ring_count = 560});
+DRAW_FRAMES(large_uncompressed_vertices, 24,
+            {.draw = Draw::uncompressed, .size = 4, .ring_count = 560});
 
 /// Rotating the light and the constants M_i l of all clusters, on all processors.
 void change_light(benchmark::State& state) {

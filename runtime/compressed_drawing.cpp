@@ -13,8 +13,6 @@ namespace prt::runtime {
 
 namespace {
 
-constexpr unsigned int kConstantsLocation = 1;
-
 /// Constants, M_i l or t_i·l, that fit the uniforms of a draw call.
 std::size_t constant_limit(const ExitLayout& layout) {
   return static_cast<std::size_t>(free_uniform_vectors(gl::limits())) / layout.pass_vector_count();
@@ -53,7 +51,8 @@ CompressedDrawing::CompressedDrawing(const Model& model, const ExitStage& exit,
       index_count_(model.indices.size()),
       constant_count_(first_constants(model.transfer->encoding).back()),
       products_(*model.transfer, exit.layout()),
-      weights_(*model.transfer, exit.end_location()) {
+      weights_(model.transfer->encoding, model.transfer->weight_format, exit.end_location()),
+      sums_(model, exit, positions, indices) {
   const cpca::Encoding& encoding = model.transfer->encoding;
   check_uniforms(encoding, exit.layout());
   constants_of_vertices_ =
@@ -82,19 +81,21 @@ void CompressedDrawing::make_programs() {
   std::uint32_t most_constants = 0;
   for (std::size_t i = 0; i + 1 < chunk_constants_.size(); ++i)
     most_constants = std::max(most_constants, chunk_constants_[i + 1] - chunk_constants_[i]);
-  for (const bool varies : {false, true}) {
-    gl::Defines defines = light_field_defines(varies);
-    for (const gl::Defines& more : {weights_.defines(), exit_.defines()})
-      defines.insert(defines.end(), more.begin(), more.end());
-    single_programs_[varies] =
-        gl::Program("transfer_single.vert", exit_.fragment_shader(), defines);
-    defines.push_back(fmt::format("CONSTANT_COUNT {}", most_constants));
-    cluster_programs_[varies] =
-        gl::Program("transfer_cluster.vert", exit_.fragment_shader(), defines);
-  }
+  const gl::Defines defines = gl::joined({weights_.defines(), exit_.defines()});
+  const gl::Defines constant_count{fmt::format("CONSTANT_COUNT {}", most_constants)};
+  const char* const pixels = exit_.fragment_shader();
+  single_programs_ = LightPrograms([=](bool varies) {
+    return gl::Program("transfer_single.vert", pixels,
+                       gl::joined({light_field_defines(varies), defines}));
+  });
+  cluster_programs_ = LightPrograms([=](bool varies) {
+    return gl::Program("transfer_cluster.vert", pixels,
+                       gl::joined({light_field_defines(varies), defines, constant_count}));
+  });
 }
 
 void CompressedDrawing::set_light(const LightField& field) {
+  sums_.outdate();
   grid_ = field.grid;
   constants_.clear();
   for (const sh::Light& sample : field.samples) {
@@ -113,7 +114,7 @@ void CompressedDrawing::bind(const gl::Program& program, const Viewpoint& viewpo
 }
 
 void CompressedDrawing::draw_single(const Viewpoint& viewpoint) const {
-  const gl::Program& program = single_programs_[grid_.size > 1];
+  const gl::Program& program = single_programs_.of(grid_.size > 1);
   const int pass_count = exit_.layout().pass_count;
   bind(program, viewpoint);
   program.set("u_constants", 0);
@@ -121,15 +122,21 @@ void CompressedDrawing::draw_single(const Viewpoint& viewpoint) const {
   constant_table_.bind(0);
   single_array_.bind();
   draw_passes(pass_count, [&](int pass) {
-    program.set("u_first_constant", pass * static_cast<int>(constant_count_));
+    program.set("u_first_vector",
+                pass * static_cast<int>(constant_count_ * exit_.layout().pass_vector_count()));
     draw_triangles(0, index_count_);
   });
+}
+
+void CompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+  if (!sums_.is_current()) sums_.fill(grid_, constants_, constant_table_);
+  sums_.draw(viewpoint);
 }
 
 void CompressedDrawing::draw_clusters(const Viewpoint& viewpoint) const {
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_ONE, GL_ONE, GL_ZERO, GL_ONE);  // coverage stays
-  const gl::Program& program = cluster_programs_[grid_.size > 1];
+  const gl::Program& program = cluster_programs_.of(grid_.size > 1);
   bind(program, viewpoint);
   chunk_array_.bind();
   const std::size_t pass_size = constant_count_ * exit_.layout().pass_vector_count();

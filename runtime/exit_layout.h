@@ -26,6 +26,8 @@ struct ExitLayout {
   bool is_glossy() const { return row_count > 1; }
   /// vec4 for one colour (when diffuse, for all).
   std::size_t color_vector_count() const { return (row_of_slot.size() + 3) / 4; }
+  /// Of which there are so many.
+  std::size_t color_count() const { return is_glossy() ? 3 : 1; }
   /// Colours that a pass draws, and the vec4 it has for a vertex.
   std::size_t pass_color_count() const { return is_glossy() && pass_count == 1 ? 3 : 1; }
   std::size_t pass_vector_count() const { return pass_color_count() * color_vector_count(); }

@@ -59,20 +59,26 @@ unsigned int ExitStage::end_location() const {
 }
 
 gl::Defines ExitStage::defines() const {
-  gl::Defines defines{fmt::format("VECTOR_COUNT {}", layout_.pass_vector_count())};
+  gl::Defines defines{fmt::format("VECTOR_COUNT {}", layout_.pass_vector_count()),
+                      fmt::format("PASS_COLOR_COUNT {}", layout_.pass_color_count()),
+                      fmt::format("COLOR_VECTOR_COUNT {}", layout_.color_vector_count()),
+                      fmt::format("CONSTANT_STRIDE {}", layout_.pass_vector_count())};
   if (!layout_.is_glossy()) return defines;
   std::string vectors;
   for (std::size_t i = 0; i < layout_.color_vector_count(); ++i)
     vectors += fmt::format("F({}, {}, {}) ", i, layout_.order_of_pair[2 * i],
                            layout_.order_of_pair[2 * i + 1]);
-  defines.insert(
-      defines.end(),
-      {"GLOSSY 1", fmt::format("PASS_COLOR_COUNT {}", layout_.pass_color_count()),
-       fmt::format("COLOR_VECTOR_COUNT {}", layout_.color_vector_count()),
-       fmt::format("BAND_COUNT {}", layout_.band_count), "FOR_EACH_VECTOR(F) " + vectors});
+  defines.insert(defines.end(), {"GLOSSY 1", fmt::format("BAND_COUNT {}", layout_.band_count),
+                                 "FOR_EACH_VECTOR(F) " + vectors});
   if (view_basis_ == ViewBasis::polynomial)
     defines.push_back("FOR_EACH_FUNCTIONS(F) " + basis_polynomials(layout_));
   return defines;
+}
+
+gl::Defines ExitStage::capture_defines() const {
+  return {"CAPTURE 1", fmt::format("VECTOR_COUNT {}", layout_.color_vector_count()),
+          "PASS_COLOR_COUNT 1", fmt::format("COLOR_VECTOR_COUNT {}", layout_.color_vector_count()),
+          fmt::format("CONSTANT_STRIDE {}", layout_.pass_vector_count())};
 }
 
 const char* ExitStage::fragment_shader() const {

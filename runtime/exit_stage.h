@@ -43,6 +43,8 @@ class ExitStage {
   /// Attribute locations below this are free.
   unsigned int end_location() const;
   gl::Defines defines() const;
+  /// For programs that capture the exit values of one colour at a time (runtime/exit_buffer.h).
+  gl::Defines capture_defines() const;
   const char* fragment_shader() const;
   void attach(gl::VertexArray& array) const;
   /// Uniforms and textures (unit 2) of the program, which is in use.

@@ -4,7 +4,6 @@
 // such start.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,7 +12,10 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "runtime/cluster_constants.h"
+#include "runtime/cluster_sums.h"
+#include "runtime/exit_buffer.h"
 #include "runtime/exit_stage.h"
+#include "runtime/light_programs.h"
 #include "runtime/light_vectors.h"
 #include "runtime/model.h"
 #include "runtime/weight_inputs.h"
@@ -33,6 +35,9 @@ class CompressedDrawing {
 
   /// All clusters in one draw call; constants are fetched for each vertex.
   void draw_single(const Viewpoint& viewpoint) const;
+  /// The same from exit values that are kept while the light stays (runtime/exit_buffer.h, where
+  /// they fit).
+  void draw_kept(const Viewpoint& viewpoint);
   /// The loop of [Sloan03] §6.2: supercluster by supercluster, constants in uniform registers,
   /// added up by blending. Where two triangles coincide exactly, both are added.
   void draw_clusters(const Viewpoint& viewpoint) const;
@@ -52,47 +57,39 @@ class CompressedDrawing {
   gl::VertexArray single_array_, chunk_array_;
   std::vector<std::size_t> chunk_offsets_;
   std::vector<std::uint32_t> chunk_constants_;  // the first of each chunk, and how many there are
-  std::array<gl::Program, 2> single_programs_, cluster_programs_;  // of constant, of varying light
+  LightPrograms single_programs_, cluster_programs_;
   gl::Table constant_table_;
   LightGrid grid_;
   std::vector<Vec4> constants_;  // of each sample of the light, of each pass
+  ClusterSums sums_;
 };
 
-/// Uncompressed diffuse transfer: the dot product of all coefficients for each vertex in its
-/// shader.
+/// Uncompressed transfer: the product of all coefficients, or of the matrix, with the light in the
+/// shader of each vertex.
 class UncompressedDrawing {
- public:
-  UncompressedDrawing(const Model& model, const gl::Buffer& positions, const gl::Buffer& indices);
-  void set_light(const LightField& field);
-  void draw(const Viewpoint& viewpoint) const;
-
- private:
-  std::size_t index_count_;
-  int band_count_;
-  gl::VertexArray array_;
-  gl::Table transfer_;
-  LightVectors light_;
-  std::array<gl::Program, 2> programs_;  // of constant, of varying light
-};
-
-/// Uncompressed glossy transfer: the product of matrix and light for each vertex in its shader.
-class MatrixDrawing {
  public:
   /// The model has an uncompressed signal; `exit`, made for it, must outlive this. Throws Error
   /// (failed) when it does not fit.
-  MatrixDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
-                const gl::Buffer& indices);
+  UncompressedDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
+                      const gl::Buffer& indices);
+  UncompressedDrawing(const UncompressedDrawing&) = delete;  // programs refer to it
+  UncompressedDrawing& operator=(const UncompressedDrawing&) = delete;
   void set_light(const LightField& field);
   void draw(const Viewpoint& viewpoint) const;
+  /// From exit values that are kept while the light stays (runtime/exit_buffer.h, where they fit).
+  void draw_kept(const Viewpoint& viewpoint);
 
  private:
+  void bind(const gl::Program& program) const;
+
   const ExitStage& exit_;
-  std::size_t index_count_;
+  std::size_t vertex_count_, index_count_;
   int band_count_;
   gl::VertexArray array_;
   gl::Table transfer_;
   LightVectors light_;
-  std::array<gl::Program, 2> programs_;  // of constant, of varying light
+  ExitBuffer kept_;
+  LightPrograms programs_, sum_programs_;
 };
 
 /// Every triangle black: what back faces stay.

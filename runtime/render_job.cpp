@@ -19,6 +19,7 @@ View make_view(const RenderOptions& options, const Model& model) {
   View view;
   view.camera = make_camera(options.picture, model.bounds);
   view.draw = options.draw.value_or(model.signal ? Draw::uncompressed : Draw::single);
+  view.sums = options.sums.value_or(Sums::kept);
   view.show = options.show;
   view.background = make_background(options.picture, options.show);
   view.background_color = options.picture.background_color;
@@ -85,6 +86,9 @@ Background make_background(const PictureOptions& options, Show show) {
 void render(const RenderOptions& options, Report& report) {
   const PictureOptions& picture = options.picture;
   check_options(picture);
+  if (options.sums && options.draw == Draw::clusters)
+    throw Error(ErrorKind::usage, "--sums has no effect on --draw clusters",
+                {.expected = "--draw single or uncompressed"});
   check_output(picture.output, picture.no_clobber);
   std::optional<StageTimer> stage(std::in_place, report, "load model");
   const Model model = load_model(picture.model, options.transfer);

@@ -89,6 +89,7 @@ struct Renderer::Drawings {
         positions(std::span(model.positions)),
         indices(std::span(model.indices)),
         exit(model, options),
+        can_keep(ExitBuffer::fits(exit.layout(), model.positions.size())),
         black(model.indices.size(), positions, indices) {
     if (model.transfer) {
       compressed.emplace(model, exit, positions, indices);
@@ -98,15 +99,12 @@ struct Renderer::Drawings {
       superclusters.emplace(label_colors(supercluster_labels(*model.transfer)), index_count,
                             positions, indices);
     }
-    if (model.signal && exit.layout().is_glossy())
-      matrices.emplace(model, exit, positions, indices);
-    else if (model.signal)
-      uncompressed.emplace(model, positions, indices);
+    if (model.signal) uncompressed.emplace(model, exit, positions, indices);
     if (model.transfer && model.signal)
       error.emplace(error_colors(model), model.indices.size(), positions, indices);
   }
 
-  void draw(const View& view, int samples) const {
+  void draw(const View& view, int samples) {
     const camera::DepthRange range = camera::depth_range(view.camera, bounds);
     const camera::Camera::Axes axes = view.camera.axes();
     const Viewpoint viewpoint{view.camera.clip_from_world(range.z_near, range.z_far),
@@ -117,30 +115,30 @@ struct Renderer::Drawings {
     // Diffuse pixels are too cheap for black ones first, unless samples of a pixel are to be the
     // same for all ways of drawing.
     const bool is_cheap = !exit.layout().is_glossy() && samples == 1;
-    if (is_cheap && view.draw != Draw::clusters) return draw_fronts(view.draw, viewpoint);
+    if (is_cheap && view.draw != Draw::clusters) return draw_fronts(view, viewpoint);
     // The front of what is nearest, over everything in black: no pixel is shaded twice, and what a
     // pixel covers is the same for every way of drawing.
     black.draw(viewpoint);
     glEnable(GL_CULL_FACE);
     glDepthFunc(GL_EQUAL);
     glDepthMask(GL_FALSE);
-    draw_fronts(view.draw, viewpoint);
+    draw_fronts(view, viewpoint);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
     glDisable(GL_CULL_FACE);
   }
 
-  void draw_fronts(Draw draw, const Viewpoint& viewpoint) const {
-    if (draw == Draw::clusters) return compressed->draw_clusters(viewpoint);
-    if (draw == Draw::single) return compressed->draw_single(viewpoint);
-    if (matrices) return matrices->draw(viewpoint);
-    uncompressed->draw(viewpoint);
+  void draw_fronts(const View& view, const Viewpoint& viewpoint) {
+    const bool keep = can_keep && view.sums == Sums::kept;
+    if (view.draw == Draw::clusters) return compressed->draw_clusters(viewpoint);
+    if (view.draw == Draw::single)
+      return keep ? compressed->draw_kept(viewpoint) : compressed->draw_single(viewpoint);
+    return keep ? uncompressed->draw_kept(viewpoint) : uncompressed->draw(viewpoint);
   }
 
   void set_light(const LightField& field) {
     if (compressed) compressed->set_light(field);
     if (uncompressed) uncompressed->set_light(field);
-    if (matrices) matrices->set_light(field);
   }
 
   camera::Sphere bounds;
@@ -148,10 +146,10 @@ struct Renderer::Drawings {
   LightGrid grid;
   gl::Buffer positions, indices;
   ExitStage exit;
+  bool can_keep;  // exit values
   BlackDrawing black;
   std::optional<CompressedDrawing> compressed;
   std::optional<UncompressedDrawing> uncompressed;
-  std::optional<MatrixDrawing> matrices;
   std::optional<ColorDrawing> clusters, superclusters, error;
 };
 
@@ -202,7 +200,7 @@ bool Renderer::can_draw(Draw draw, Show show) const {
   if (!drawings_) return false;
   if (show == Show::clusters || show == Show::superclusters) return drawings_->clusters.has_value();
   if (show == Show::error) return drawings_->error.has_value();
-  if (draw == Draw::uncompressed) return drawings_->uncompressed || drawings_->matrices;
+  if (draw == Draw::uncompressed) return drawings_->uncompressed.has_value();
   return drawings_->compressed.has_value();
 }
 

@@ -1,20 +1,32 @@
 #include <fmt/format.h>
 
-#include "runtime/draw_calls.h"
+#include <numeric>
+
+#include "core/parallel.h"
 #include "runtime/model_drawing.h"
+#include "sh/basis.h"
 
 namespace prt::runtime {
 
 namespace {
 
-std::size_t vector_count(int band_count) {
-  return static_cast<std::size_t>(band_count * band_count + 3) / 4;
+std::size_t coefficient_count(const signal::TransferSignal& signal) {
+  return sh::row_size(signal.band_count);
 }
 
-/// Coefficients in fours, zero padded at the end of each channel.
-std::vector<Vec4> padded_transfer(const signal::TransferSignal& signal) {
-  const auto coefficients = static_cast<std::size_t>(signal.band_count * signal.band_count);
-  const std::size_t vectors = vector_count(signal.band_count);
+std::size_t row_vector_count(int band_count) { return (sh::row_size(band_count) + 3) / 4; }
+
+/// vec4 of a sample of the light: of glossy transfer (R, G, B, 0) for each coefficient; of diffuse
+/// transfer coefficients in fours, colour by colour.
+std::size_t light_vector_count(int band_count, bool is_glossy) {
+  return is_glossy ? sh::row_size(band_count) : 3 * row_vector_count(band_count);
+}
+
+/// Diffuse transfer as transfer_uncompressed.vert reads it: coefficients in fours, zero padded at
+/// the end of each channel.
+std::vector<Vec4> padded_rows(const signal::TransferSignal& signal) {
+  const std::size_t coefficients = coefficient_count(signal);
+  const std::size_t vectors = row_vector_count(signal.band_count);
   const std::size_t row_count =
       signal.vertex_count() * static_cast<std::size_t>(signal.channel_count);
   std::vector<Vec4> padded(row_count * vectors, Vec4(0.0f));
@@ -25,72 +37,106 @@ std::vector<Vec4> padded_transfer(const signal::TransferSignal& signal) {
   return padded;
 }
 
-}  // namespace
-
-UncompressedDrawing::UncompressedDrawing(const Model& model, const gl::Buffer& positions,
-                                         const gl::Buffer& indices)
-    : index_count_(model.indices.size()),
-      band_count_(model.signal->band_count),
-      array_(array_with_positions(positions, indices)),
-      light_(3 * vector_count(band_count_)) {
-  const std::vector<Vec4> padded = padded_transfer(*model.signal);
-  transfer_ = gl::Table(padded.size());
-  transfer_.upload(padded);
-  for (const bool varies : {false, true}) {
-    gl::Defines defines = light_.defines(varies);
-    defines.push_back(fmt::format("CHANNEL_COUNT {}", model.signal->channel_count));
-    defines.push_back(fmt::format("VECTOR_COUNT {}", vector_count(band_count_)));
-    programs_[varies] = gl::Program("transfer_uncompressed.vert", "radiance.frag", defines);
-  }
+/// Matrices as transfer_matrix.vert reads them: for each vertex, channel and source coefficient a
+/// column of exit coefficients by slot.
+std::vector<Vec4> columns_of(const signal::TransferSignal& signal, const ExitLayout& layout) {
+  const std::size_t coefficients = coefficient_count(signal);
+  const auto rows = static_cast<std::size_t>(signal.row_count);
+  const std::size_t vectors = layout.color_vector_count();
+  const std::size_t matrix_count =
+      signal.vertex_count() * static_cast<std::size_t>(signal.channel_count);
+  std::vector<Vec4> columns(matrix_count * coefficients * vectors, Vec4(0.0f));
+  parallel_for(matrix_count, 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t matrix = begin; matrix < end; ++matrix)
+      for (std::size_t slot = 0; slot < rows; ++slot) {
+        const auto row = static_cast<std::size_t>(layout.row_of_slot[slot]);
+        for (std::size_t i = 0; i < coefficients; ++i)
+          columns[(matrix * coefficients + i) * vectors + slot / 4][static_cast<int>(slot % 4)] =
+              signal.values[(matrix * rows + row) * coefficients + i];
+      }
+  });
+  return columns;
 }
 
-void UncompressedDrawing::set_light(const LightField& field) {
-  light_.set(field, [&](const sh::Light& sample, Vec4* vectors) {
-    const sh::Light fitted = sh::with_band_count(sample, band_count_);
-    for (std::size_t color = 0; color < 3; ++color, vectors += vector_count(band_count_))
-      for (std::size_t k = 0; k < fitted.coefficients[color].size(); ++k)
-        vectors[k / 4][static_cast<int>(k % 4)] = fitted.coefficients[color][k];
+std::vector<std::uint32_t> numbers(std::size_t count) {
+  std::vector<std::uint32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return numbers;
+}
+
+}  // namespace
+
+UncompressedDrawing::UncompressedDrawing(const Model& model, const ExitStage& exit,
+                                         const gl::Buffer& positions, const gl::Buffer& indices)
+    : exit_(exit),
+      vertex_count_(model.positions.size()),
+      index_count_(model.indices.size()),
+      band_count_(model.signal->band_count),
+      array_(array_with_positions(positions, indices)),
+      light_(light_vector_count(band_count_, exit.layout().is_glossy())),
+      kept_(exit, numbers(vertex_count_), index_count_, positions, indices) {
+  exit.attach(array_);
+  const bool is_glossy = exit.layout().is_glossy();
+  const std::vector<Vec4> values =
+      is_glossy ? columns_of(*model.signal, exit.layout()) : padded_rows(*model.signal);
+  transfer_ = gl::Table(values.size());
+  transfer_.upload(values);
+  const char* const shader = is_glossy ? "transfer_matrix.vert" : "transfer_uncompressed.vert";
+  const gl::Defines sizes{fmt::format("CHANNEL_COUNT {}", model.signal->channel_count),
+                          fmt::format("ROW_VECTOR_COUNT {}", row_vector_count(band_count_))};
+  programs_ = LightPrograms([=, this](bool varies) {
+    return gl::Program(shader, exit_.fragment_shader(),
+                       gl::joined({exit_.defines(), light_.defines(varies), sizes}));
+  });
+  sum_programs_ = LightPrograms([=, this](bool varies) {
+    return ExitBuffer::capturing(
+        shader, gl::joined({exit_.capture_defines(), light_.defines(varies), sizes}));
   });
 }
 
-void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
-  const gl::Program& program = programs_[light_.varies()];
+void UncompressedDrawing::set_light(const LightField& field) {
+  kept_.outdate();
+  light_.set(field, [&](const sh::Light& sample, Vec4* vectors) {
+    const sh::Light fitted = sh::with_band_count(sample, band_count_);
+    for (std::size_t color = 0; color < 3; ++color)
+      for (std::size_t k = 0; k < fitted.coefficients[color].size(); ++k) {
+        const float value = fitted.coefficients[color][k];
+        if (exit_.layout().is_glossy())
+          vectors[k][static_cast<int>(color)] = value;
+        else
+          vectors[color * row_vector_count(band_count_) + k / 4][static_cast<int>(k % 4)] = value;
+      }
+  });
+}
+
+void UncompressedDrawing::bind(const gl::Program& program) const {
   program.use();
-  program.set("u_clip_from_world", viewpoint.clip_from_world);
   program.set("u_transfer", 0);
   transfer_.bind(0);
   light_.bind(program);
   array_.bind();
-  draw_triangles(0, index_count_);
 }
 
-BlackDrawing::BlackDrawing(std::size_t index_count, const gl::Buffer& positions,
-                           const gl::Buffer& indices)
-    : index_count_(index_count),
-      array_(array_with_positions(positions, indices)),
-      program_("black.vert", "black.frag") {}
-
-void BlackDrawing::draw(const Viewpoint& viewpoint) const {
-  program_.use();
-  program_.set("u_clip_from_world", viewpoint.clip_from_world);
-  array_.bind();
-  draw_triangles(0, index_count_);
+void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
+  const gl::Program& program = programs_.of(light_.varies());
+  bind(program);
+  exit_.bind(program, viewpoint);
+  draw_passes(exit_.layout().pass_count, [&](int pass) {
+    program.set("u_pass", pass);
+    draw_triangles(0, index_count_);
+  });
 }
 
-ColorDrawing::ColorDrawing(std::span<const Vec3> colors, std::size_t index_count,
-                           const gl::Buffer& positions, const gl::Buffer& indices)
-    : index_count_(index_count),
-      colors_(colors),
-      array_(array_with_positions(positions, indices)),
-      program_("vertex_color.vert", "vertex_color.frag") {
-  array_.set_floats(1, colors_, 3, sizeof(Vec3), 0);
-}
-
-void ColorDrawing::draw(const Viewpoint& viewpoint) const {
-  program_.use();
-  program_.set("u_clip_from_world", viewpoint.clip_from_world);
-  array_.bind();
-  draw_triangles(0, index_count_);
+void UncompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+  if (!kept_.is_current()) {
+    const gl::Program& program = sum_programs_.of(light_.varies());
+    bind(program);
+    kept_.fill([&](int color) {
+      program.set("u_pass", color);
+      gl::draw_points(0, vertex_count_);
+    });
+  }
+  kept_.draw(viewpoint);
 }
 
 }  // namespace prt::runtime

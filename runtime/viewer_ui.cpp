@@ -92,6 +92,9 @@ void Viewer::draw_panel() {
     ImGui::TextUnformatted(model_text_.c_str());
   ImGui::Separator();
   draw_mode_choice();
+  bool kept = view_.sums == Sums::kept;
+  if (ImGui::Checkbox("Sums kept while the light stays", &kept))
+    view_.sums = kept ? Sums::kept : Sums::every_frame;
   ImGui::SliderFloat("Exposure", &view_.exposure, -6.0f, 6.0f, "%+.1f stops");
   draw_light_controls();
   ImGui::Separator();

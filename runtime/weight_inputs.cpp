@@ -63,11 +63,9 @@ PackedWeights packed_weights(const cpca::Encoding& encoding) {
 
 }  // namespace
 
-WeightInputs::WeightInputs(const gltf::PrecomputedTransfer& transfer, unsigned int end_location)
-    : is_adaptive_(!transfer.encoding.component_counts.empty()),
-      component_count_(transfer.encoding.component_count) {
-  const cpca::Encoding& encoding = transfer.encoding;
-  cpca::WeightFormat format = transfer.weight_format;
+WeightInputs::WeightInputs(const cpca::Encoding& encoding, cpca::WeightFormat format,
+                           unsigned int end_location)
+    : is_adaptive_(!encoding.component_counts.empty()), component_count_(encoding.component_count) {
   if (is_adaptive_ && format == cpca::WeightFormat::unorm16 && !gl::limits().unorm16_textures)
     format = cpca::WeightFormat::float32;
   scalar_ = scalar_of(format);

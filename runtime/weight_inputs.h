@@ -3,19 +3,22 @@
 // of the file, half floats and normalised integers too, which vertices fetch as floats.
 #pragma once
 
+#include "cpca/encoding.h"
+#include "cpca/weight_format.h"
 #include "gl/objects.h"
 #include "gl/program.h"
-#include "gltf/precomputed_transfer.h"
 
 namespace prt::runtime {
 
+constexpr unsigned int kConstantsLocation = 1;  ///< where those of the vertex's cluster begin
 constexpr unsigned int kFirstWeightLocation = 2;
 
 class WeightInputs {
  public:
   /// Attribute locations from `end_location` on are used otherwise. Throws Error (failed) when the
   /// components need more.
-  WeightInputs(const gltf::PrecomputedTransfer& transfer, unsigned int end_location);
+  WeightInputs(const cpca::Encoding& encoding, cpca::WeightFormat format,
+               unsigned int end_location);
 
   gl::Defines defines() const;
   void attach(gl::VertexArray& array) const;

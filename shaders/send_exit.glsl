@@ -8,7 +8,13 @@
 // interpolated they are therefore turned about the normal into a frame that varies smoothly: the
 // camera's, moved by the least rotation that takes the direction from target to eye to the normal.
 // A turn by angle a acts on the coefficients of (l,m) and (l,-m) as a turn by m a of a plane.
-#ifdef GLOSSY
+//
+// Exit values that are to be kept (runtime/exit_buffer.h) are captured as they are.
+#ifdef CAPTURE
+out vec4 v_exit[VECTOR_COUNT];
+
+void send_exit(vec4 exit[VECTOR_COUNT]) { v_exit = exit; }
+#elif defined(GLOSSY)
 layout(location = 14) in vec3 a_normal;
 layout(location = 15) in vec4 a_tangent;  // orthogonal to the normal; w: handedness
 

@@ -8,11 +8,11 @@
 
 uniform sampler2D u_constants;  // light sample by light sample, pass by pass, cluster by cluster
 uniform int u_sample_size;      // constants of a light sample
-uniform int u_first_constant;   // of the pass
+uniform int u_first_vector;     // of the pass, or of the colour
 
 void add(inout vec4 exit[VECTOR_COUNT], int constant, float weight) {
   for (int j = 0; j < VECTOR_COUNT; ++j)
-    exit[j] += weight * table_at(u_constants, constant * VECTOR_COUNT + j);
+    exit[j] += weight * table_at(u_constants, u_first_vector + constant * CONSTANT_STRIDE + j);
 }
 
 void main() {
@@ -20,7 +20,7 @@ void main() {
   for (int j = 0; j < VECTOR_COUNT; ++j) exit[j] = vec4(0.0);
   for (int k = 0; k < LIGHT_SAMPLE_COUNT; ++k) {
     LightSample light = light_sample(k);
-    int first = light.number * u_sample_size + u_first_constant + int(a_first_constant);
+    int first = light.number * u_sample_size + int(a_first_constant);
     add(exit, first, light.share);
 #define ADD_TERM(i, weight) add(exit, first + 1 + i, light.share * weight);
     FOR_EACH_WEIGHT(ADD_TERM)

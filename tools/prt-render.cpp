@@ -24,6 +24,8 @@ using prt::runtime::ViewBasis;
 
 const std::map<std::string, Draw> kDraws = {
     {"single", Draw::single}, {"clusters", Draw::clusters}, {"uncompressed", Draw::uncompressed}};
+const std::map<std::string, prt::runtime::Sums> kSums = {
+    {"kept", prt::runtime::Sums::kept}, {"every-frame", prt::runtime::Sums::every_frame}};
 const std::map<std::string, Passes> kPasses = {
     {"auto", Passes::automatic}, {"one", Passes::one}, {"per-channel", Passes::per_channel}};
 const std::map<std::string, ViewBasis> kViewBases = {{"polynomial", ViewBasis::polynomial},
@@ -72,6 +74,8 @@ void add_render_options(prt::cli::Options& app, prt::runtime::RenderOptions& opt
       "--draw", options.draw, kDraws,
       "How: compressed in one draw, by clusters, or uncompressed [single, or uncompressed "
       "with --transfer]");
+  app.add_choice("--sums", options.sums, kSums,
+                 "By light: when it changes, or in every frame as it is drawn [kept]");
   app.add_choice("--passes", options.exit.passes, kPasses,
                  "Of glossy transfer: all colours in one, or per-channel [auto: as OpenGL can]");
   app.add_choice("--view-basis", options.exit.view_basis, kViewBases,
@@ -107,7 +111,7 @@ void add_reference_options(prt::cli::Options& app, prt::runtime::ReferenceOption
   app.add_option("--noise-output", options.noise,
                  "Write the standard error of each pixel too (.exr), for prt-inspect --noise")
       ->needs(flag);
-  for (const char* name : {"--transfer", "--draw", "--passes", "--view-basis", "--show",
+  for (const char* name : {"--transfer", "--draw", "--sums", "--passes", "--view-basis", "--show",
                            "--point-light", "--sphere-light", "--light-grid"})
     flag->excludes(app.get(name));
 }

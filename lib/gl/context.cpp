@@ -72,6 +72,7 @@ Limits limits() {
       std::min({integer(GL_MAX_VARYING_COMPONENTS), integer(GL_MAX_VERTEX_OUTPUT_COMPONENTS) - 4,
                 integer(GL_MAX_FRAGMENT_INPUT_COMPONENTS)});
   limits.max_varying_vectors = varying_components / 4;
+  limits.max_captured_vectors = integer(GL_MAX_TRANSFORM_FEEDBACK_INTERLEAVED_COMPONENTS) / 4;
   limits.float32_filters =
       epoxy_is_desktop_gl() || epoxy_has_gl_extension("GL_OES_texture_float_linear");
   limits.unorm16_textures =

@@ -55,6 +55,7 @@ struct Limits {
   int max_vertex_attributes;       ///< vec4 each
   int max_vertex_uniform_vectors;  ///< vec4 each
   int max_varying_vectors;         ///< vec4 each, from vertices to pixels
+  int max_captured_vectors;        ///< vec4 each, from vertices to buffers (gl::Capture)
   bool float32_targets;            ///< RGBA32F can be drawn to and blended
   bool float32_filters;            ///< RGBA32F can be filtered
   bool unorm16_textures;           ///< normalised integers of 16 bits can be textures

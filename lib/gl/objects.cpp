@@ -40,14 +40,17 @@ ScalarType type_of(Scalar scalar) {
 }
 
 /// A constant power of two, so that the shader need not divide; OpenGL ES 3.0 promises as much.
-constexpr int kTableWidth = 2048;
+constexpr std::size_t kTableRowLength = 2048;
 
-int table_height(std::size_t count) {
-  const std::size_t height = std::max<std::size_t>((count + kTableWidth - 1) / kTableWidth, 1);
-  if (height > static_cast<std::size_t>(limits().max_texture_size))
+std::size_t table_height(std::size_t count) {
+  return std::max<std::size_t>((count + kTableRowLength - 1) / kTableRowLength, 1);
+}
+
+int checked_height(std::size_t count) {
+  if (!Table::fits(count))
     throw_failed("the model's data do not fit a texture of this OpenGL",
                  {.found = std::to_string(count) + " vec4"});
-  return static_cast<int>(height);
+  return static_cast<int>(table_height(count));
 }
 
 const void* byte_offset(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
@@ -65,6 +68,13 @@ Buffer::Buffer(std::span<const std::byte> bytes)
   glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
                GL_STATIC_DRAW);
   check_errors("storing a buffer");
+}
+
+Buffer::Buffer(std::size_t byte_count)
+    : name_(generate([](GLsizei n, GLuint* names) { glGenBuffers(n, names); })) {
+  glBindBuffer(GL_COPY_WRITE_BUFFER, name());
+  glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(byte_count), nullptr, GL_DYNAMIC_COPY);
+  check_errors("making room in a buffer");
 }
 
 VertexArray::VertexArray()
@@ -120,26 +130,58 @@ void Texture::bind(int unit) const {
   glBindTexture(GL_TEXTURE_2D, name());
 }
 
+bool Table::fits(std::size_t count) {
+  return table_height(count) <= static_cast<std::size_t>(limits().max_texture_size);
+}
+
 Table::Table(std::size_t count, Scalar scalar)
-    : Texture(type_of(scalar).texture_format, type_of(scalar).type, kTableWidth,
-              table_height(count), nullptr),
+    : Texture(type_of(scalar).texture_format, type_of(scalar).type,
+              static_cast<int>(kTableRowLength), checked_height(count), nullptr),
       count_(count),
       scalar_(scalar) {}
 
 void Table::upload(std::span<const std::byte> values) {
-  const ScalarType type = type_of(scalar_);
-  const std::size_t element_bytes = 4 * type.bytes;
-  if (values.size() != count_ * element_bytes) throw_failed("a table keeps its size");
+  if (values.size() != count_ * 4 * type_of(scalar_).bytes) throw_failed("a table keeps its size");
+  copy(reinterpret_cast<std::uintptr_t>(values.data()));
+}
+
+void Table::upload(const Buffer& buffer) {
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.name());
+  copy(0);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+/// From an address, or from a place in the bound buffer.
+void Table::copy(std::uintptr_t first) {
   glBindTexture(GL_TEXTURE_2D, name());
-  const std::size_t full_rows = count_ / static_cast<std::size_t>(width_);
-  const std::size_t rest = count_ % static_cast<std::size_t>(width_);
-  const auto rows = static_cast<GLsizei>(full_rows);
-  if (rows > 0)
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, rows, GL_RGBA, type.type, values.data());
-  if (rest > 0)
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, static_cast<GLsizei>(rest), 1, GL_RGBA, type.type,
-                    values.data() + (count_ - rest) * element_bytes);
+  const ScalarType type = type_of(scalar_);
+  const std::size_t full_rows = count_ / kTableRowLength, rest = count_ % kTableRowLength;
+  const auto put = [&](std::size_t row, std::size_t width, std::size_t height) {
+    if (width == 0 || height == 0) return;
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(row), static_cast<GLsizei>(width),
+                    static_cast<GLsizei>(height), GL_RGBA, type.type,
+                    byte_offset(first + row * kTableRowLength * 4 * type.bytes));
+  };
+  put(0, kTableRowLength, full_rows);
+  put(full_rows, rest, 1);
   check_errors("uploading a table");
+}
+
+Capture::Capture(const Buffer& buffer, std::size_t offset, std::size_t byte_count) {
+  glEnable(GL_RASTERIZER_DISCARD);
+  glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer.name(), static_cast<GLintptr>(offset),
+                    static_cast<GLsizeiptr>(byte_count));
+  glBeginTransformFeedback(GL_POINTS);
+}
+
+void draw_points(std::size_t first, std::size_t count) {
+  glDrawArrays(GL_POINTS, static_cast<GLint>(first), static_cast<GLsizei>(count));
+}
+
+Capture::~Capture() {
+  glEndTransformFeedback();
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  glDisable(GL_RASTERIZER_DISCARD);
 }
 
 TextureArray::TextureArray(int size, std::span<const Vec4> texels)

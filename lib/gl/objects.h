@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -41,13 +42,15 @@ void delete_vertex_array(unsigned int name);
 /// greatest.
 enum class Scalar { float32, float16, unorm16, unorm8 };
 
-/// Immutable vertex or index data.
+/// Vertex or index data, immutable; or room for what a gl::Capture writes.
 class Buffer {
  public:
   Buffer() = default;
   template <class T>
   explicit Buffer(std::span<const T> values) : Buffer(std::as_bytes(values)) {}
   explicit Buffer(std::span<const std::byte> bytes);
+  /// Nothing yet.
+  explicit Buffer(std::size_t byte_count);
   unsigned int name() const { return name_.get(); }
 
  private:
@@ -101,11 +104,29 @@ class Table : public Texture {
   /// All elements; the same number as at construction.
   void upload(std::span<const Vec4> values) { upload(std::as_bytes(values)); }
   void upload(std::span<const std::byte> values);
+  /// The same from a buffer of so many elements, inside of OpenGL.
+  void upload(const Buffer& buffer);
   std::size_t count() const { return count_; }
+  /// Whether a table of so many elements is within the limits of this OpenGL.
+  static bool fits(std::size_t count);
 
  private:
+  void copy(std::uintptr_t first);
+
   std::size_t count_ = 0;
   Scalar scalar_ = Scalar::float32;
+};
+
+/// While it lives, drawn points are not drawn: what the program in use captures of each (the
+/// outputs of its vertex shader that gl::Program was told) is written to `buffer`, one point after
+/// the other, from byte `offset` on; at most `byte_count`. A framebuffer must be bound all the
+/// same.
+class Capture {
+ public:
+  Capture(const Buffer& buffer, std::size_t offset, std::size_t byte_count);
+  ~Capture();
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
 };
 
 /// Layers of square images, filtered bilinearly within a layer, edges clamped: RGBA32F, or RGBA16F
@@ -147,6 +168,9 @@ class Target {
 void bind_window(int width, int height);
 /// What has been drawn to it since the last swap: linear RGB, first row on top.
 image::Image read_window(int width, int height);
+
+/// `count` vertices of the bound array from number `first` on, to be captured.
+void draw_points(std::size_t first, std::size_t count);
 
 /// Runs the program in use over the whole viewport; its vertex shader is fullscreen.vert. The array
 /// has no attributes.

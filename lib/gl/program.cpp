@@ -31,8 +31,14 @@ unsigned int compile(GLenum stage, const std::string& file, const Defines& defin
 
 }  // namespace
 
+Defines joined(std::initializer_list<Defines> parts) {
+  Defines all;
+  for (const Defines& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 Program::Program(const std::string& vertex_file, const std::string& fragment_file,
-                 const Defines& defines)
+                 const Defines& defines, const char* captured)
     : name_(glCreateProgram()) {
   for (const auto& [stage, file] :
        {std::pair<GLenum, const std::string&>(GL_VERTEX_SHADER, vertex_file),
@@ -41,6 +47,7 @@ Program::Program(const std::string& vertex_file, const std::string& fragment_fil
     glAttachShader(name_, shader);
     glDeleteShader(shader);  // lives on in the program
   }
+  if (captured) glTransformFeedbackVaryings(name_, 1, &captured, GL_INTERLEAVED_ATTRIBS);
   glLinkProgram(name_);
   GLint linked = 0, log_length = 0;
   glGetProgramiv(name_, GL_LINK_STATUS, &linked);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,13 +20,16 @@ std::filesystem::path shader_folder();
 
 /// "NAME VALUE", as after #define.
 using Defines = std::vector<std::string>;
+/// All of them.
+Defines joined(std::initializer_list<Defines> parts);
 
 class Program {
  public:
   Program() = default;
-  /// File names relative to shader_folder(). Throws Error (failed) with the compiler's log.
+  /// File names relative to shader_folder(). `captured`: the output of the vertex shader, an array
+  /// as a whole, that a gl::Capture writes. Throws Error (failed) with the compiler's log.
   Program(const std::string& vertex_file, const std::string& fragment_file,
-          const Defines& defines = {});
+          const Defines& defines = {}, const char* captured = nullptr);
   ~Program();
   Program(Program&& other) noexcept;
   Program& operator=(Program&& other) noexcept;

@@ -38,6 +38,8 @@ class GlossyRender(ToolTest):
                                     "--view-basis", "map")
         self.assertEqual(report["pass_count"], 3)
         self.assertLess(self.difference(one, three), 1e-3)
+        summed, _ = self.render("summed.exr", "--sums", "every-frame")
+        self.assertLess(self.difference(one, summed), 1e-5)
         exact, _ = self.render("exact.exr", "--transfer", self.transfer)
         self.assertLess(self.difference(exact, one), 0.1)
         lamp = ("--sphere-light", "0,2,2,0.3,30,30,30", "--point-light", "2,0,1,4,3,2")
@@ -52,6 +54,8 @@ class GlossyRender(ToolTest):
                      "--sphere-light", "0,1,0,0,1,1,1")
         self.refused(WRONG_USAGE, "excludes", "prt-render", model, "-o", picture,
                      "--reference", "--point-light", "0,1,0,1,1,1")
+        self.refused(WRONG_USAGE, "no effect", "prt-render", model, "-o", picture,
+                     "--draw", "clusters", "--sums", "kept")
         self.refused(WRONG_USAGE, "--passes", "prt-render", model, "-o", picture, "--passes", "2")
 
 

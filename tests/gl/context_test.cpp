@@ -80,6 +80,30 @@ TEST_P(EveryApi, TablesSpanRowsOfATexture) {
   EXPECT_THROW(table.upload(std::span(values).first(10)), Error);
 }
 
+TEST_P(EveryApi, CaptureKeepsWhatAVertexShaderOutputs) {
+  const Program program("fullscreen.vert", "black.frag", {}, "v_ndc");
+  const VertexArray none;
+  const Buffer buffer(4 * 2 * sizeof(float));
+  const Target target(limits().float32_targets ? Format::rgba32f : Format::rgba16f, 2, 1, false, 1);
+  target.bind();
+  {
+    none.bind();
+    program.use();
+    const Capture capture(buffer, 0, 4 * 2 * sizeof(float));
+    draw_points(0, 4);
+  }
+  Table table(2);
+  table.upload(buffer);
+  const Program copy("fullscreen.vert", "composite.frag");
+  copy.use();
+  copy.set("u_scene", 0);
+  table.bind(0);
+  draw_fullscreen(none);
+  std::vector<float> read(8);
+  target.read(read);
+  EXPECT_EQ(read, (std::vector<float>{-1, -1, 3, -1, -1, 3, 3, 3}));
+}
+
 TEST_P(EveryApi, OversizedTextureIsAnErrorThatSaysTheLimit) {
   const int limit = limits().max_texture_size;
   try {

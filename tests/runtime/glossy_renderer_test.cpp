@@ -28,9 +28,10 @@ class GlossyOnEveryApi : public testing::TestWithParam<gl::Api> {
     renderer_.set_model(model, options);
     renderer_.set_lighting(lighting_from(light));
   }
-  image::Image render(const Model& model, Draw draw, int samples = 1) {
+  image::Image render(const Model& model, Draw draw, int samples = 1, Sums sums = Sums::kept) {
     View view = view_of(model);
     view.draw = draw;
+    view.sums = sums;
     return renderer_.render(view, kWidth, kHeight, samples);
   }
 };
@@ -51,9 +52,12 @@ TEST_P(GlossyOnEveryApi, EveryWayOfDrawingGivesTheSamePixels) {
     EXPECT_LT(largest_difference(expected, render(model, Draw::clusters)), 1 / 255.0f);
     EXPECT_LT(largest_difference(render(model, Draw::single, 4), render(model, Draw::clusters, 4)),
               1 / 255.0f);
+    EXPECT_LT(largest_difference(expected, render(model, Draw::single, 1, Sums::every_frame)),
+              1e-4f);
     load(model, light, {.passes = Passes::per_channel});
     EXPECT_EQ(renderer_.pass_count(), 3);
-    EXPECT_LT(largest_difference(expected, render(model, Draw::single)), 1e-4f);
+    for (const Sums sums : {Sums::kept, Sums::every_frame})
+      EXPECT_LT(largest_difference(expected, render(model, Draw::single, 1, sums)), 1e-4f);
     EXPECT_LT(largest_difference(expected, render(model, Draw::clusters)), 1 / 255.0f);
   }
 }
@@ -72,6 +76,8 @@ TEST_P(GlossyOnEveryApi, PixelsAgreeWithTheCpuTwin) {
       load(model, light, options);
       for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed})
         expect_cpu_pixels(model, draw, light, render(model, draw));
+      expect_cpu_pixels(model, Draw::uncompressed, light,
+                        render(model, Draw::uncompressed, 1, Sums::every_frame));
     }
   }
 }

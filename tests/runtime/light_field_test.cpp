@@ -121,7 +121,10 @@ TEST_P(NearLightsOnEveryApi, PixelsAgreeWithTheCpuTwinHoweverDrawn) {
       for (const Draw draw : {Draw::single, Draw::clusters, Draw::uncompressed}) {
         View view = view_of(model);
         view.draw = draw;
-        expect_cpu_pixels(model, draw, field, renderer_.render(view, kWidth, kHeight, 1));
+        for (const Sums sums : {Sums::kept, Sums::every_frame}) {
+          view.sums = sums;
+          expect_cpu_pixels(model, draw, field, renderer_.render(view, kWidth, kHeight, 1));
+        }
       }
     }
   }

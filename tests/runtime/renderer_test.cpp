@@ -10,6 +10,7 @@
 #include "image/environment.h"
 #include "image/false_color.h"
 #include "runtime/cluster_constants.h"
+#include "runtime/glossy_models.h"
 #include "runtime/models.h"
 #include "runtime/pictures.h"
 #include "runtime/shading.h"
@@ -22,9 +23,11 @@ class EveryApi : public testing::TestWithParam<gl::Api> {
   gl::HeadlessContext context_{{.api = GetParam()}};
   Renderer renderer_;
 
-  image::Image render(const Model& model, Draw draw, const Lighting& lighting, int samples = 1) {
+  image::Image render(const Model& model, Draw draw, const Lighting& lighting, int samples = 1,
+                      Sums sums = Sums::kept) {
     View view = view_of(model);
     view.draw = draw;
+    view.sums = sums;
     renderer_.set_model(model);
     renderer_.set_lighting(lighting);
     return renderer_.render(view, kWidth, kHeight, samples);
@@ -101,6 +104,41 @@ TEST_P(EveryApi, HalfFloatTargetsAddUpClustersToWithinAStepOfAPicture) {
   for (const Draw draw : {Draw::single, Draw::clusters}) {
     view.draw = draw;
     EXPECT_LT(largest_difference(expected, half.render(view, kWidth, kHeight, 1)), 1.0f / 255.0f);
+  }
+}
+
+TEST_P(EveryApi, SumsThatAreKeptAreThoseOfEveryFrame) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  const Lighting lighting = lighting_from(test_light(3));
+  for (const auto& transfer : {random_transfer(scene.vertex_count(), 3, 3, 40, 0),
+                               random_transfer(scene.vertex_count(), 3, 1, 40, 7),
+                               random_adaptive_transfer(scene.vertex_count(), 3, 3, 40, 7)}) {
+    const Model model = make_model(scene, transfer, decompressed(transfer));
+    for (const Draw draw : {Draw::single, Draw::uncompressed})
+      EXPECT_LT(largest_difference(render(model, draw, lighting, 1, Sums::kept),
+                                   render(model, draw, lighting, 1, Sums::every_frame)),
+                1e-4f);
+  }
+}
+
+TEST_P(EveryApi, SumsThatAreKeptFollowTheLight) {
+  const mesh::Scene scene = scene_of({torus(60, 30)});
+  const auto transfer = random_transfer(scene.vertex_count(), 3, 3, 40, 7);
+  const Model model = make_model(scene, transfer, decompressed(transfer));
+  renderer_.set_model(model);
+  renderer_.set_lighting(lighting_from(test_light(3)));
+  for (const Draw draw : {Draw::single, Draw::uncompressed}) {
+    View view = view_of(model);
+    view.draw = draw;
+    const auto render = [&](float degrees, Sums sums) {
+      view.sums = sums;
+      renderer_.set_light_rotation(light_rotation(degrees));
+      return renderer_.render(view, kWidth, kHeight, 1);
+    };
+    const image::Image before = render(0, Sums::kept), after = render(90, Sums::kept);
+    EXPECT_GT(largest_difference(before, after), 0.1f);
+    EXPECT_LT(largest_difference(after, render(90, Sums::every_frame)), 1e-4f);
+    EXPECT_EQ(largest_difference(before, render(0, Sums::kept)), 0.0f);
   }
 }
 
