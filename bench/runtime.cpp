@@ -112,7 +112,7 @@ DRAW_FRAMES_OF(diffuse, 1);
 DRAW_FRAMES_OF(glossy, 24);
 DRAW_FRAMES(glossy_single_per_channel, 24, {.exit = {.passes = Passes::per_channel}});
 DRAW_FRAMES(glossy_single_map, 24, {.exit = {.view_basis = ViewBasis::map}});
-// Nearly the most vertices whose matrices a texture of 16384² holds, 532 MB.
+// Nearly the most vertices whose matrices a table of 2048 × 16384 texels holds, 532 MB.
 DRAW_FRAMES(large_single_vertices, 24, {.size = 4, .ring_count = 560});
 DRAW_FRAMES(large_kept_vertices_turning, 24,
             {.sums = Sums::kept, .turning = true, .size = 4, .ring_count = 560});
