@@ -39,7 +39,10 @@ bool has_scheme(std::string_view name) {
 /// With links followed; empty when that fails.
 std::filesystem::path real_path(const std::filesystem::path& path) {
   std::error_code error;
-  const auto real = std::filesystem::weakly_canonical(path.empty() ? "." : path, error);
+  // weakly_canonical leaves a relative path relative where its first part does not exist.
+  const auto absolute = std::filesystem::absolute(path.empty() ? "." : path, error);
+  if (error) return {};
+  const auto real = std::filesystem::weakly_canonical(absolute, error);
   return error ? std::filesystem::path() : real;
 }
 

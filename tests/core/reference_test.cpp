@@ -22,6 +22,15 @@ TEST(ResolveReference, GivesTheRealPathInsideTheFolder) {
   EXPECT_EQ(resolve_reference(file, "link.bin", Escapes::none), real / "sub" / "b c.bin");
 }
 
+TEST(ResolveReference, TakesTheCurrentFolderForThatOfABareName) {
+  const TemporaryFolder folder;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  const fs::path found = resolve_reference("a.gltf", "missing.bin", Escapes::none);
+  fs::current_path(before);
+  EXPECT_EQ(found, fs::canonical(folder.path()) / "missing.bin");
+}
+
 TEST(ResolveReference, RefusesWhatLeavesTheFolder) {
   const TemporaryFolder folder;
   fs::create_symlink("/etc/hostname", folder / "link");
