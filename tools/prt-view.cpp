@@ -1,6 +1,8 @@
 // prt-view: the interactive viewer. The work is in runtime/viewer.h.
+#include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "cli/paths.h"
 #include "cli/tool.h"
@@ -59,11 +61,15 @@ int main(int argc, char** argv) {
   ViewerOptions options;
   add_options(tool.options(), options);
   return tool.run(argc, argv, [&](prt::Report& report) {
-    prt::cli::check_paths({options.model, options.transfer, options.light},
-                          {{options.screenshot, {".png"}, {}}}, tool.common());
+    const std::vector<std::filesystem::path> inputs{options.model, options.transfer, options.light};
+    prt::cli::check_paths(inputs, {{options.screenshot, {".png"}, {}}}, tool.common());
     options.no_clobber = tool.common().no_clobber;
     options.debug = tool.common().verbose;
     prt::runtime::Viewer viewer(options);
     report.json()["start_seconds"] = viewer.run();
+    for (const auto& input : inputs) {
+      if (!input.empty()) report.add_input(input);
+    }
+    if (!options.screenshot.empty()) report.add_output(options.screenshot);
   });
 }

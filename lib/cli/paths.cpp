@@ -29,6 +29,10 @@ void check_different(const fs::path& written, const char* role, const fs::path& 
 }
 
 void check_extension(const Output& output) {
+  if (fs::is_directory(output.path)) {
+    throw Error(ErrorKind::usage, "is a folder",
+                {.file = output.path.string(), .advice = "Give the name of a file in it."});
+  }
   const std::string found = lower_extension(output.path);
   if (std::ranges::count(output.extensions, found) == 0) {
     throw Error(ErrorKind::usage, "not a kind of file that this tool writes",
@@ -42,7 +46,10 @@ void check_extension(const Output& output) {
 
 void check_paths(const std::vector<fs::path>& inputs, const std::vector<Output>& outputs,
                  const CommonOptions& common) {
-  for (const fs::path& input : inputs) check_different(common.report, "an input", input);
+  for (const fs::path& input : inputs) {
+    if (!input.empty()) check_input(input);
+    check_different(common.report, "an input", input);
+  }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const Output& output = outputs[i];
     if (output.path.empty()) continue;

@@ -52,6 +52,18 @@ void check_unsigned(const CLI::Option& option) {
   }
 }
 
+/// CLI11 calls a missing value by the types of its checks, and lists unknown arguments backwards.
+std::string message_of(const CLI::App& app, const CLI::Error& error) {
+  const std::string what = error.what();
+  if (error.get_name() == "ExtrasError") {
+    return fmt::format("not understood: {}", fmt::join(app.remaining(true), " "));
+  }
+  if (error.get_name() == "ArgumentMismatch" && what.ends_with(" missing")) {
+    return what.substr(0, what.find(':')) + ": a value is missing";
+  }
+  return what;
+}
+
 /// Results that do not arrive (a full disk, a closed pipe) are a failure.
 void flush_results() {
   std::cout.flush();
@@ -72,8 +84,8 @@ Tool::Tool(std::string name, std::string description, std::string example)
   app_->option_defaults()->always_capture_default()->multi_option_policy(
       CLI::MultiOptionPolicy::TakeLast);
   app_->set_version_flag("--version", [this] { return version(); });
-  app_->failure_message([this](const CLI::App*, const CLI::Error& error) {
-    const std::string_view what = error.what();
+  app_->failure_message([this](const CLI::App* app, const CLI::Error& error) {
+    const std::string what = message_of(*app, error);
     return fmt::format("{}: {}{} {} --help says more.\n", name_, what,
                        what.ends_with('.') ? "" : ".", name_);
   });

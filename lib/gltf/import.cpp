@@ -55,6 +55,7 @@ ImportResult import_file(const std::filesystem::path& path, const ImportOptions&
   if (mesh::is_mesh_file(path)) return import_mesh_file(path, options);
   const std::string ending = lower_extension(path);
   if (ending == ".gltf" || ending == ".glb") return import_gltf(path, options);
+  check_input(path);
   throw_bad_input("unknown kind of file", {.file = path.string(),
                                            .found = "\"" + ending + "\"",
                                            .expected = ".obj, .ply, .off, .stl, .gltf or .glb"});

@@ -21,7 +21,7 @@ class BadMesh(ToolTest):
                      self.folder / "no-such.obj", "-o", self.folder / "out.glb")
 
     def test_folder_instead_of_file(self):
-        self.refused(BAD_INPUT, "kind of file", "prt-import", self.folder, "-o",
+        self.refused(BAD_INPUT, "not a regular file", "prt-import", self.folder, "-o",
                      self.folder / "out.glb")
 
     def test_obj_index_past_the_end(self):
