@@ -66,11 +66,11 @@ class LibraryReader {
       const std::size_t space = name.find_last_of(" \t");
       name = space == name.npos ? std::string_view() : name.substr(space + 1);
     }
-    const std::filesystem::path file = resolve_reference(path_, name, Escapes::none);
-    const auto [known, added] = images_.try_emplace(file.string(), -1);
+    const auto [known, added] = images_.try_emplace(std::string(name), -1);
     if (added) {
       try {
-        image::Image image = image::read_image(file, pixels_left());
+        image::Image image =
+            image::read_image(resolve_reference(path_, name, Escapes::none), pixels_left());
         known->second = static_cast<int>(scene_.images.size());
         scene_.images.push_back(std::move(image));
       } catch (const Error& error) {
