@@ -3,6 +3,7 @@
 
 #include "cli/paths.h"
 #include "cli/tool.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "inspect/compare.h"
 #include "inspect/compression_error.h"
@@ -68,7 +69,7 @@ void check_files(Options& options, const cli::CommonOptions& common) {
   std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
     if (options.transfer.empty()) options.transfer = inspect::transfer_beside(options.file);
-    inspect::check_plot_folder(options.plots);
+    check_output_folder(options.plots);
     for (const fs::path& file : inspect::plot_files(options.plots, !options.transfer.empty())) {
       outputs.push_back({file, {file.extension().string()}, {}});
     }

@@ -188,4 +188,13 @@ void check_output(const std::filesystem::path& path, bool no_clobber) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) throw_system("cannot write in the folder", path);
 }
 
+void check_output_folder(const std::filesystem::path& path) {
+  // Of "plots/" the parent is "plots", which is not there yet.
+  const std::filesystem::path name = path.has_filename() ? path : path.parent_path();
+  if (!std::filesystem::exists(name)) return check_output(name, false);
+  if (!std::filesystem::is_directory(name)) {
+    throw_failed("exists and is no folder", {.file = path.string()});
+  }
+}
+
 }  // namespace prt

@@ -43,4 +43,8 @@ class AtomicFile {
 /// pipe, a link to one of these or to nothing). Tools ask before the work, not after.
 void check_output(const std::filesystem::path& path, bool no_clobber);
 
+/// The same of a folder, which is made when it is missing; it may be written with a slash at its
+/// end. Throws Error (failed) when `path` is neither a folder nor can become one.
+void check_output_folder(const std::filesystem::path& path);
+
 }  // namespace prt

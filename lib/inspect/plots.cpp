@@ -193,12 +193,6 @@ std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
   return plots;
 }
 
-void check_plot_folder(const std::filesystem::path& folder) {
-  if (!std::filesystem::exists(folder)) return check_output(folder, false);
-  if (std::filesystem::is_directory(folder)) return;
-  throw_failed("exists and is no folder", {.file = folder.string()});
-}
-
 void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,
                  bool no_clobber, Report& report) {
   std::filesystem::create_directory(folder);

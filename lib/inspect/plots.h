@@ -40,9 +40,6 @@ std::filesystem::path transfer_beside(const std::filesystem::path& model);
 std::vector<Plot> plots_of_compression(const std::filesystem::path& model,
                                        const std::filesystem::path& transfer);
 
-/// Throws Error (failed) when it is neither a folder nor can become one.
-void check_plot_folder(const std::filesystem::path& folder);
-
 /// Writes NAME.png and NAME.csv of each plot into the folder, made when missing, and adds
 /// them to the report's outputs. Throws Error (failed).
 void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder,

@@ -77,8 +77,17 @@ class Options(ToolTest):
         self.refused(BAD_INPUT, "l.json", "prt-inspect", light, "--plots", plots)
         self.assertFalse(plots.exists())
         self.refused(FAILED, "no folder", "prt-inspect", self.quad, "--plots", self.source)
+        self.refused(FAILED, "no folder", "prt-inspect", self.quad, "--plots", f"{self.source}/")
         self.refused(FAILED, "Create .*missing first", "prt-inspect", self.quad, "--plots",
                      self.folder / "missing" / "plots")
+        self.done("prt-transfer", self.quad, "-o", self.folder / "quad.transfer.exr", "--rays", 16)
+        baked = self.folder / "quad.prt.glb"
+        self.done("prt-compress", self.quad, self.folder / "quad.transfer.exr", "-o", baked,
+                  "--method", "vq", "--clusters", 1)
+        for name in ("plots", "slash/", "slash/"):  # made, made, and there already
+            self.done("prt-inspect", baked, "--plots", f"{self.folder}/{name}", "--transfer",
+                      self.folder / "quad.transfer.exr")
+            self.assertTrue((self.folder / name / "clusters.png").exists(), name)
 
     def test_a_model_is_no_transfer(self):
         self.refused(BAD_INPUT, "not a readable OpenEXR file", "prt-render", self.quad, "-o",
