@@ -49,7 +49,10 @@ struct Entry {
 
 std::uint32_t checksum(const std::string& header, std::span<const std::byte> data) {
   uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(header.data()), header.size());
-  crc = crc32_z(crc, reinterpret_cast<const Bytef*>(data.data()), data.size());
+  // Of a null pointer, which empty data may have, zlib begins anew.
+  if (!data.empty()) {
+    crc = crc32_z(crc, reinterpret_cast<const Bytef*>(data.data()), data.size());
+  }
   return static_cast<std::uint32_t>(crc);
 }
 

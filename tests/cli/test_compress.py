@@ -155,6 +155,13 @@ class Signal(ToolTest):
         self.refused(FAILED, "exists", "prt-compress", "--signal", self.signal, "-o", output,
                      "--no-clobber")
 
+    def test_arrays_without_numbers_are_whole(self):
+        output = self.folder / "x.npz"
+        for options in (("--method", "vq", "--clusters", 20), ("--max-error", 1)):
+            self.assertEqual(self.compress("-o", output, *options)["component_count"], 0)
+            with zipfile.ZipFile(output) as archive:
+                self.assertIsNone(archive.testzip())
+
     def test_weighted_figures_are_of_the_weights(self):
         weights = [100.0] * 6 + [0.01] * 6
         output = self.folder / "x.npz"
