@@ -153,12 +153,13 @@ void Checkpoint::add(Name name, const Place& place) {
 
 std::size_t Checkpoint::byte_count(Name name) const {
   const std::lock_guard lock(mutex_);
-  const auto found = places_.find(name);
+  const auto found = places_.find({first_stage_ + name.stage, name.index});
   return found != places_.end() ? found->second.byte_count : 0;
 }
 
 std::size_t Checkpoint::byte_count(std::uint32_t stage) const {
   const std::lock_guard lock(mutex_);
+  stage += first_stage_;
   std::size_t sum = 0;
   for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
        ++at) {
@@ -169,6 +170,7 @@ std::size_t Checkpoint::byte_count(std::uint32_t stage) const {
 
 void Checkpoint::release(std::uint32_t stage) {
   const std::lock_guard lock(mutex_);
+  stage += first_stage_;
   for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
        at = places_.erase(at)) {
     room_.emplace(at->second.byte_count, at->second.offset);
@@ -177,7 +179,7 @@ void Checkpoint::release(std::uint32_t stage) {
 
 bool Checkpoint::restore_bytes(Name name, std::span<std::byte> result) const {
   const std::lock_guard lock(mutex_);
-  const auto found = places_.find(name);
+  const auto found = places_.find({first_stage_ + name.stage, name.index});
   return found != places_.end() && found->second.byte_count == result.size() &&
          read_all(descriptor_, result.data(), result.size(), found->second.offset);
 }
@@ -193,6 +195,7 @@ void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
   if (given_up_) return;
   if (!begun_) begin_file();
   if (given_up_) return;
+  name.stage += first_stage_;
   const RecordHead head{name.stage, name.index, result.size(), last_number_ + 1};
   Hasher hasher;
   hasher.add(&head, sizeof head);
