@@ -4,8 +4,12 @@
 #include <filesystem>
 
 #include "cpca/encoding.h"
+#include "cpca/search_choice.h"
 
 namespace prt::compress {
+
+/// What the file of save_arrays takes, to the byte.
+cpca::StorageCost cost_in_arrays(int cluster_count = 1);
 
 /// Writes the .npz file of docs/tools/prt-compress.md, "Signals of your own". Throws Error
 /// (failed).

@@ -102,7 +102,7 @@ cpca::StorageCost cost_in_file(const Job& job) {
 /// Of the largest error of a point reclassification takes only what is left.
 cpca::Bound bound_of_encoder(const Job& job) {
   cpca::Bound bound = job.bound;
-  if (job.signal.empty()) bound.cost = cost_in_file(job);
+  bound.cost = job.signal.empty() ? cost_in_file(job) : cost_in_arrays();
   if (job.max_component_count > 0) bound.cost.max_component_count = job.max_component_count;
   if (!bound.max_error || !job.signal.empty()) return bound;
   const bool spends = !job.storage.is_incoherent && bound.norm == cpca::Norm::rmse;
@@ -187,6 +187,12 @@ std::size_t stored_numbers(const cpca::Encoding& encoding) {
   return (cpca::storage_bytes(encoding) - encoding.point_count * index_bytes) / sizeof(float);
 }
 
+/// As the file stores it: what the encoder tells is of plain floats.
+void set_bytes(std::size_t bytes, nlohmann::ordered_json& json) {
+  json["bytes"] = bytes;
+  json["compression_ratio"] = json["signal_bytes"].get<double>() / static_cast<double>(bytes);
+}
+
 /// Figures of what is stored, weighted ones too where there are weights. Throws Error (failed) when
 /// these are beyond max_error: the search left room, which given weights may exceed.
 void report_encoding(const Job& job, const Input& input, const cpca::Encoded& encoded,
@@ -206,6 +212,9 @@ void report_encoding(const Job& job, const Input& input, const cpca::Encoded& en
                      .point_count = encoded.encoding.point_count};
   json["relative_max"] = plain.relative_max();
   json["stored_numbers"] = stored_numbers(encoded.encoding);
+  if (!input.document) {
+    set_bytes(cost_in_arrays(encoded.encoding.cluster_count).bytes(encoded.encoding), json);
+  }
   if (!input.weights().empty()) {
     json["weighted_squared_error"] = errors.squared;
     json["weighted_signal_energy"] = errors.energy;
@@ -235,10 +244,8 @@ void save_model(const Job& job, Input& input, const cpca::Storage& storage, cpca
                                            .encoding = std::move(encoding),
                                            .weight_format = storage.weight_format,
                                            .first_clusters = storage.first_clusters};
-  auto& json = report.json();
-  const std::size_t bytes = gltf::stored_bytes(transfer).total();  // the encoder's was an estimate
-  json["bytes"] = bytes;
-  json["compression_ratio"] = json["signal_bytes"].get<double>() / static_cast<double>(bytes);
+  const std::size_t bytes = gltf::stored_bytes(transfer).total();
+  set_bytes(bytes, report.json());
   if (job.bound.max_bytes && bytes > *job.bound.max_bytes) {
     throw_failed("the weights take more room than the search allowed for",
                  {.found = fmt::format("{} bytes", bytes),

@@ -25,6 +25,7 @@ struct Size {
 /// How an encoding will be stored, beside its means and vectors, which are floats. To begin with,
 /// as storage_bytes counts.
 struct StorageCost {
+  std::size_t bytes_of_headers = 0;
   std::size_t bytes_per_point = 2;  ///< its cluster, one of 65536 at most
   std::size_t bytes_per_weight = 4;
   std::size_t weight_group = 1;       ///< weights of a point are padded to a multiple of this

@@ -77,7 +77,7 @@ Header parse_dictionary(std::string_view dictionary) {
     refuse("values column by column", "'fortran_order': True", "C order");
   }
   std::vector<std::size_t> shape = parse_shape(value_of(dictionary, "shape"));
-  if (shape.size() == 1) shape.insert(shape.begin(), 1);
+  if (shape.size() == 1) shape.push_back(1);
   if (shape.size() != 2 || shape[0] == 0 || shape[1] == 0) {
     refuse("no values", "an empty shape", "at least one row and one column");
   }

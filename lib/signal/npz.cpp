@@ -109,6 +109,16 @@ std::string npy_header(const std::string& type, std::span<const std::size_t> sha
   return record.bytes();
 }
 
+std::size_t npz_bytes(std::span<const Array> arrays) {
+  std::size_t bytes = end_records(0, 0, 0).size();
+  for (const Array& array : arrays) {
+    const Entry entry{.name = array.name + ".npy"};
+    bytes += local_header(entry).size() + npy_header(array.type, array.shape).size() +
+             array.data.size() + central_header(entry).size();
+  }
+  return bytes;
+}
+
 void write_npz(const std::filesystem::path& path, std::span<const Array> arrays, bool no_clobber) {
   AtomicFile file(path, no_clobber);
   std::string central;

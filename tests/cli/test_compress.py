@@ -119,19 +119,39 @@ class Signal(ToolTest):
                                                                    10 + length)
         (points,), clusters = arrays["cluster_of_point.npy"]
         (_, dimension), means = arrays["means.npy"]
-        (_, components, _), bases = arrays["bases.npy"]
-        self.assertEqual(arrays["weights.npy"][0], (points, components))
-        weights, counts = arrays["weights.npy"][1], arrays["component_counts.npy"][1]
-        self.assertLessEqual(max(counts), components)
+        (_, counts), (shape, bases) = arrays["component_counts.npy"], arrays["bases.npy"]
+        self.assertEqual(shape, (sum(counts), dimension))
+        weights = iter(arrays["weights.npy"][1])
+        first_vectors = [sum(counts[:k]) for k in range(len(counts))]
         rows = []
-        for p, k in enumerate(clusters):
+        for k in clusters:
             row = list(means[k * dimension:(k + 1) * dimension])
-            for i in range(counts[k]):
-                first = (k * components + i) * dimension
+            for i in range(first_vectors[k], first_vectors[k] + counts[k]):
+                weight = next(weights)
                 for j in range(dimension):
-                    row[j] += weights[p * components + i] * bases[first + j]
+                    row[j] += weight * bases[i * dimension + j]
             rows.append(row)
+        self.assertEqual((len(rows), next(weights, None)), (points, None))
         return rows
+
+    def test_bytes_are_those_of_the_file(self):
+        output = self.folder / "x.npz"
+        for method in ("vq", "static", "adaptive"):
+            report = self.compress("-o", output, "--method", method, "--clusters", 20)
+            self.assertEqual(report["bytes"], output.stat().st_size)
+            self.assertEqual(report["compression_ratio"], report["signal_bytes"] / report["bytes"])
+        for method in ("static", "iterative", "adaptive"):
+            report = self.compress("-o", output, "--method", method, "--max-bytes", 20000)
+            self.assertEqual(report["bytes"], output.stat().st_size)
+            self.assertIn(report["bytes"], [t["bytes"] for t in report["search"]["trials"]])
+            self.assertLessEqual(report["bytes"], 20000)
+
+    def test_a_list_of_numbers_has_a_point_each(self):
+        header = npy_header(1500, 1).replace(b"(1500, 1)", b"(1500,)  ")
+        values = [row[0] for row in curved_rows()]
+        self.signal.write_bytes(header + struct.pack("<1500f", *values))
+        report = self.compress("--method", "vq", "--clusters", 20)
+        self.assertEqual((report["point_count"], report["dimension"]), (1500, 1))
 
     def test_arrays_hold_what_the_report_says(self):
         for size in (1.0, 1e-30, 1e30):

@@ -65,7 +65,7 @@ TEST_F(Npy, ReadsFloatsAndDoublesOfAllVersions) {
   write(dictionary("<f8", "(100, 100)"), many);
   EXPECT_EQ(read_npy(path_).values, std::vector<float>(many.begin(), many.end()));
   write(dictionary("<f4", "(6,)"), values);
-  EXPECT_EQ(read_npy(path_).row_count, 1u);
+  EXPECT_EQ(read_npy(path_).row_count, 6u);
   EXPECT_EQ(read_npy(path_).values, values);
 }
 
@@ -94,7 +94,19 @@ TEST_F(Npy, ReadsItsOwnHeader) {
     write_bytes(header + std::string(reinterpret_cast<const char*>(values.data()), 12));
     const Matrix matrix = read_npy(path_);
     EXPECT_EQ(matrix.values, values);
-    EXPECT_EQ(matrix.column_count, shape.back());
+    EXPECT_EQ(matrix.row_count, shape.front());
+  }
+}
+
+TEST_F(Npy, BytesOfArchivesAreThoseOfTheFile) {
+  const std::vector<float> none, some(12);
+  for (const std::vector<float>& values : {none, some}) {
+    const std::vector<Array> arrays{
+        make_array("a", "<f4", {values.size() / 3, 3}, values),
+        make_array("another_name", "<f4", {values.size()}, values),
+    };
+    write_npz(path_, arrays);
+    EXPECT_EQ(npz_bytes(arrays), fs::file_size(path_));
   }
 }
 
