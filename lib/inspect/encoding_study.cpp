@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "cpca/coherence.h"
@@ -105,13 +107,40 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
   return plot;
 }
 
+cpca::Encoding encode_iteratively(const signal::TransferSignal& signal, int cluster_count,
+                                  int component_count) {
+  return cpca::encode_iterative(
+             signal.values, signal.dimension(),
+             {.cluster_count = cluster_count, .component_count = component_count})
+      .encoding;
+}
+
+EncodingError error_of(const std::string& name, const cpca::Encoding& encoding,
+                       const signal::TransferSignal& signal) {
+  std::vector<double> errors = cpca::point_errors(encoding, signal.values);
+  const double energy =
+      std::transform_reduce(signal.values.begin(), signal.values.end(), 0.0, std::plus<>(),
+                            [](float value) { return double{value} * double{value}; });
+  EncodingError result{name, std::accumulate(errors.begin(), errors.end(), 0.0), {}};
+  for (double& error : errors) {
+    error = energy > 0.0 ? std::sqrt(error * static_cast<double>(errors.size()) / energy) : 0.0;
+  }
+  result.relative = std::move(errors);
+  return result;
+}
+
+std::vector<EncodingError> errors_by_method(const signal::TransferSignal& signal,
+                                            const cpca::Encoding& iterative) {
+  const cpca::Options options{.cluster_count = iterative.cluster_count,
+                              .component_count = iterative.component_count};
+  const int n = signal.dimension();
+  return {error_of("static", cpca::encode_static(signal.values, n, options).encoding, signal),
+          error_of("iterative", iterative, signal),
+          error_of("adaptive", cpca::encode_adaptive(signal.values, n, options).encoding, signal)};
+}
+
 CoherenceStudy study_coherence(const signal::TransferSignal& signal,
-                               const std::vector<std::uint32_t>& indices, int cluster_count,
-                               int component_count) {
-  cpca::Encoding encoding =
-      cpca::encode_iterative(signal.values, signal.dimension(),
-                             {.cluster_count = cluster_count, .component_count = component_count})
-          .encoding;
+                               const std::vector<std::uint32_t>& indices, cpca::Encoding encoding) {
   CoherenceStudy study;
   study.before = encoding.cluster_of_point;
   cpca::Encoding reclassified = encoding;  // with clusters numbered as they are

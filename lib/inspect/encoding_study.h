@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cpca/encoding.h"
+#include "inspect/error_figure.h"
 #include "inspect/line_plot.h"
 #include "signal/transfer_signal.h"
 
@@ -20,14 +21,26 @@ LinePlot error_over_storage(const signal::TransferSignal& signal);
 LinePlot error_over_components(const signal::TransferSignal& signal, int cluster_count,
                                int most_components);
 
-/// [Sloan03] Figure 5: an iterative encoding of the signal before and after coherence optimisation
-/// with the usual budgets.
+/// An iterative encoding as those that follow take it.
+cpca::Encoding encode_iteratively(const signal::TransferSignal& signal, int cluster_count,
+                                  int component_count);
+
+/// [Sloan03] Figure 4: errors of static and adaptive encodings with as many clusters and vectors as
+/// an iterative one, and of that, in the order of the paper.
+std::vector<EncodingError> errors_by_method(const signal::TransferSignal& signal,
+                                            const cpca::Encoding& iterative);
+
+/// Of an encoding, as CompressionError has them.
+EncodingError error_of(const std::string& name, const cpca::Encoding& encoding,
+                       const signal::TransferSignal& signal);
+
+/// [Sloan03] Figure 5: an encoding of the signal before and after coherence optimisation with the
+/// usual budgets.
 struct CoherenceStudy {
   std::vector<std::uint32_t> before, reclassified;  ///< cluster of each point, numbered alike
   std::vector<std::uint32_t> superclustered;        ///< supercluster of each point
 };
 CoherenceStudy study_coherence(const signal::TransferSignal& signal,
-                               const std::vector<std::uint32_t>& indices, int cluster_count,
-                               int component_count);
+                               const std::vector<std::uint32_t>& indices, cpca::Encoding encoding);
 
 }  // namespace prt::inspect

@@ -53,7 +53,7 @@ std::string kind_of(const std::filesystem::path& path) {
                    .expected = "glTF, OpenEXR, Radiance HDR, PNG, JPEG, or a light of prt-light"});
 }
 
-Json to_json(const std::vector<Finding>& findings) {
+Json findings_to_json(const std::vector<Finding>& findings) {
   Json list = Json::array();
   for (const Finding& finding : findings) {
     list.push_back({{"severity", finding.severity == Severity::error ? "error" : "warning"},
@@ -90,7 +90,7 @@ Inspection inspect_file(const std::filesystem::path& path) {
     inspection.error(error.details().element, error.what());
   }
   json["valid"] = inspection.valid();
-  json["findings"] = to_json(inspection.findings);
+  json["findings"] = findings_to_json(inspection.findings);
   return inspection;
 }
 

@@ -80,10 +80,14 @@ class Raster {
 
 }  // namespace
 
-image::Image draw_scene(const mesh::Scene& scene, std::span<const Vec3> colors, bool smooth,
-                        const std::string& caption, int size) {
+void draw_surface(Canvas& canvas, int left, int top, int size, const mesh::Scene& scene,
+                  std::span<const Vec3> colors, const SurfaceView& view) {
   const int sample_size = size * kSamples;
-  const camera::Camera camera = camera::frame(camera::bounding_sphere(scene), kFieldOfView, 1.0f);
+  camera::Camera camera = camera::frame(camera::bounding_sphere(scene), kFieldOfView, 1.0f);
+  if (view.is_from_behind) {
+    const Vec3 offset = camera.eye - camera.target;
+    camera.eye = camera.target + Vec3(-offset.x, offset.y, -offset.z);
+  }
   const camera::Camera::Axes axes = camera.axes();
   const float scale = 0.5f * static_cast<float>(sample_size) /
                       std::tan(kFieldOfView * static_cast<float>(M_PI) / 360.0f);
@@ -103,14 +107,20 @@ image::Image draw_scene(const mesh::Scene& scene, std::span<const Vec3> colors, 
       const Vec3 middle = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0f;
       const Vec3 normal = (mesh.normals[a] + mesh.normals[b] + mesh.normals[c]).normalized();
       const float facing = std::abs(normal.dot((camera.eye - middle).normalized()));
-      raster.draw({corner(a), corner(b), corner(c)}, 0.45f + 0.55f * facing, smooth);
+      raster.draw({corner(a), corner(b), corner(c)}, view.is_shaded ? 0.45f + 0.55f * facing : 1.0f,
+                  view.is_smooth);
     }
     first_vertex += mesh.vertex_count();
   }
-  Canvas canvas(size, size, kWhite);
   for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) canvas.fill(x, y, 1, 1, raster.mean(x, y));
+    for (int x = 0; x < size; ++x) canvas.fill(left + x, top + y, 1, 1, raster.mean(x, y));
   }
+}
+
+image::Image draw_scene(const mesh::Scene& scene, std::span<const Vec3> colors,
+                        const std::string& caption, int size) {
+  Canvas canvas(size, size, kWhite);
+  draw_surface(canvas, 0, 0, size, scene, colors, {});
   canvas.text(10, size - 18, caption, kBlack);
   return canvas.linear();
 }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -59,8 +60,7 @@ Plot label_plot(const std::string& name, const mesh::Scene& scene, const Labels&
   for (const std::uint32_t label : labels) colors.push_back(image::cluster_color(label));
   const double overdraw =
       cpca::overdraw(cpca::sent_triangle_count(scene.indices(), labels), scene.triangle_count());
-  return {name,
-          draw_scene(scene, colors, false, fmt::format("{}: overdraw {:.3f}", name, overdraw)),
+  return {name, draw_scene(scene, colors, fmt::format("{}: overdraw {:.3f}", name, overdraw)),
           sizes_csv(labels)};
 }
 
@@ -77,7 +77,7 @@ Plot vector_count_plot(const mesh::Scene& scene, const cpca::Encoding& encoding)
   }
   const std::string caption =
       fmt::format("vectors of a vertex's cluster: 0 (blue) to {} (red)", encoding.component_count);
-  return {"vectors", draw_scene(scene, colors, false, caption), csv};
+  return {"vectors", draw_scene(scene, colors, caption), csv};
 }
 
 // What each vector adds to the signal beyond the means: as long as it still falls, more are of use.
@@ -116,20 +116,23 @@ Plot variance_plot(const cpca::Encoding& encoding) {
   return {"vector-variance", draw(plot), to_csv(plot)};
 }
 
-// Red is the 99th percentile of a vertex's error: what stands out is where the error is.
-Plot error_plot(const mesh::Scene& scene, std::vector<double> errors) {
-  std::string csv = "vertex,relative_error\n";
-  for (std::size_t p = 0; p < errors.size(); ++p) csv += fmt::format("{},{:.6g}\n", p, errors[p]);
-  std::vector<double> sorted = errors;
-  const double scale = sorted.empty() ? 0.0 : percentile(sorted, 0.99);
-  std::vector<Vec3> colors;
-  for (const double error : errors) {
-    colors.push_back(image::heat_color(scale > 0.0 ? static_cast<float>(error / scale) : 0.0f));
+/// n' of an adaptive encoding: the average over points.
+int average_component_count(const cpca::Encoding& encoding) {
+  double sum = 0.0;
+  for (const std::uint32_t k : encoding.cluster_of_point) {
+    sum += encoding.component_count_of(static_cast<int>(k));
   }
-  return {
-      "error",
-      draw_scene(scene, colors, true, fmt::format("relative error, red: {:.3g} and more", scale)),
-      csv};
+  return static_cast<int>(std::lround(sum / static_cast<double>(encoding.point_count)));
+}
+
+// The file beside what each method makes of the same counts.
+Plot error_plot(const mesh::Scene& scene, const signal::TransferSignal& signal,
+                const EncodingError& stored, const cpca::Encoding& iterative) {
+  std::vector<EncodingError> errors = errors_by_method(signal, iterative);
+  errors.insert(errors.begin(), stored);
+  const std::string title = fmt::format("Squared error over the surface, {} clusters of {} vectors",
+                                        iterative.cluster_count, iterative.component_count);
+  return {"error", draw(scene, errors, title), to_csv(errors)};
 }
 
 }  // namespace
@@ -179,14 +182,16 @@ std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
                    plot(histogram, "Compression error of " + path.filename().string(),
                         "error of a vertex / root mean square transfer"),
                    to_csv(histogram)});
-  plots.push_back(error_plot(model.scene, error.relative));
   const int clusters = model.transfer.encoding.cluster_count;
+  const cpca::Encoding iterative =
+      encode_iteratively(signal, clusters, average_component_count(model.transfer.encoding));
+  const EncodingError stored{"this file", error.json["squared_error"], error.relative};
+  plots.push_back(error_plot(model.scene, signal, stored, iterative));
   const LinePlot storage = error_over_storage(signal);
   plots.push_back({"error-over-storage", draw(storage), to_csv(storage)});
   const LinePlot methods = error_over_components(signal, clusters, kMostComponents);
   plots.push_back({"error-over-components", draw(methods), to_csv(methods)});
-  const CoherenceStudy study = study_coherence(signal, model.scene.indices(), clusters,
-                                               model.transfer.encoding.component_count);
+  const CoherenceStudy study = study_coherence(signal, model.scene.indices(), iterative);
   plots.push_back(label_plot("clusters-before", model.scene, study.before));
   plots.push_back(label_plot("clusters-reclassified", model.scene, study.reclassified));
   plots.push_back(label_plot("clusters-superclustered", model.scene, study.superclustered));

@@ -32,11 +32,11 @@ inline const std::vector<std::string> kPlotsOfTransfer{
 /// left out without it.
 std::filesystem::path transfer_beside(const std::filesystem::path& model);
 
-/// What the transfer that it was compressed from adds: `error-histogram`, `error`, and what other
-/// encodings of that signal would give: `error-over-storage`, `error-over-components`, and clusters
-/// as an iterative encoder leaves them (`clusters-before`) and after coherence optimisation
-/// (`clusters-reclassified`, `clusters-superclustered`), with as many clusters and vectors as the
-/// model has.
+/// What the transfer that it was compressed from adds: `error-histogram`, and beside the model's
+/// what other encodings of that signal would give: `error`, by method, `error-over-storage`,
+/// `error-over-components`, and clusters as an iterative encoder leaves them (`clusters-before`)
+/// and after coherence optimisation (`clusters-reclassified`, `clusters-superclustered`), with as
+/// many clusters and (on average) vectors as the model has.
 std::vector<Plot> plots_of_compression(const std::filesystem::path& model,
                                        const std::filesystem::path& transfer);
 

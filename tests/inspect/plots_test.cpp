@@ -6,11 +6,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/random.h"
 #include "cpca/encoder.h"
+#include "image/false_color.h"
+#include "inspect/canvas.h"
 #include "inspect/encoding_study.h"
+#include "inspect/error_figure.h"
 #include "inspect/line_plot.h"
 #include "inspect/mesh_picture.h"
 #include "sample_files.h"
@@ -31,6 +35,25 @@ signal::TransferSignal smooth_signal(std::size_t point_count) {
     }
   }
   return signal;
+}
+
+TEST(EncodingStudy, ErrorsByMethodAreOfTheSameCounts) {
+  const signal::TransferSignal signal = smooth_signal(640);
+  const auto errors = errors_by_method(signal, encode_iteratively(signal, 8, 2));
+  ASSERT_EQ(errors.size(), 3u);
+  const char* const names[] = {"static", "iterative", "adaptive"};
+  double energy = 0.0;
+  for (const float value : signal.values) energy += double{value} * double{value};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(errors[i].name, names[i]);
+    ASSERT_EQ(errors[i].relative.size(), 640u);
+    double sum = 0.0;
+    for (const double error : errors[i].relative) sum += error * error;
+    EXPECT_NEAR(sum / 640.0 * energy, errors[i].squared_error, 1e-6 * errors[i].squared_error);
+    if (i > 0) EXPECT_LT(errors[i].squared_error, errors[i - 1].squared_error);
+  }
+  EXPECT_NEAR(errors[0].squared_error, error_over_components(signal, 8, 2).series[0].y[2],
+              1e-3 * errors[0].squared_error);
 }
 
 double static_error(const signal::TransferSignal& signal, int clusters, int components) {
@@ -103,11 +126,65 @@ TEST(MeshPicture, ShowsTheNearestTriangleInItsColor) {
   std::vector<Vec3> colors(9, Vec3(0, 1, 0));
   for (std::size_t i = 3; i < 6; ++i) colors[i] = Vec3(1, 0, 0);
   for (const bool smooth : {false, true}) {
-    const image::Image image = draw_scene(scene, colors, smooth, "", 64);
+    Canvas canvas(64, 64, kBlack);
+    draw_surface(canvas, 0, 0, 64, scene, colors, {.is_smooth = smooth});
+    const image::Image image = canvas.linear();
     const float* const middle = image.at(32, 36);
     EXPECT_GT(middle[0], 0.5f);
     EXPECT_EQ(middle[1], 0.0f);
     EXPECT_EQ(image.at(1, 1)[1], 1.0f);  // beside: white
+  }
+}
+
+TEST(MeshPicture, ShowsTheOtherSideFromBehindAndUnshadedTheColorsAsTheyAre) {
+  mesh::Scene scene;
+  for (const float z : {-0.5f, 0.5f}) {
+    mesh::Primitive& primitive = scene.primitives.emplace_back();
+    primitive.mesh.positions = {{-1, -1, z}, {1, -1, z}, {0, 1, z}};
+    primitive.mesh.normals.assign(3, {0, 0, 1});
+    primitive.mesh.indices = {0, 1, 2};
+  }
+  const std::vector<Vec3> colors{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+  for (const bool behind : {false, true}) {
+    Canvas canvas(64, 64, kBlack);
+    draw_surface(canvas, 0, 0, 64, scene, colors,
+                 {.is_smooth = true, .is_shaded = false, .is_from_behind = behind});
+    const image::Image image = canvas.linear();
+    EXPECT_NEAR(image.at(32, 36)[behind ? 0 : 1], 1.0f, 1e-5f);
+    EXPECT_NEAR(image.at(32, 36)[behind ? 1 : 0], 0.0f, 1e-5f);
+  }
+}
+
+TEST(ErrorFigure, ShowsAllEncodingsOnOneScale) {
+  mesh::Scene scene;
+  mesh::Primitive& primitive = scene.primitives.emplace_back();
+  primitive.mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  primitive.mesh.normals.assign(3, {0, 0, 1});
+  primitive.mesh.indices = {0, 1, 2};
+  const std::vector<EncodingError> errors{{"a", 3.5, {0.2, 0.2, 0.2}},
+                                          {"b", 1.25, {0.1, 0.1, 0.1}}};
+  EXPECT_EQ(to_csv(errors), "vertex,a,b\n0,0.2,0.1\n1,0.2,0.1\n2,0.2,0.1\n");
+  const image::Image image = draw(scene, errors, "title");
+  const auto count = [&](const Vec3& color, int from, int to) {
+    Canvas canvas(1, 1, color);
+    const image::Image sample = canvas.linear();
+    std::size_t found = 0;
+    for (int y = 64; y < 64 + 680; ++y) {
+      for (int x = from; x < to; ++x) {
+        float difference = 0.0f;
+        for (int c = 0; c < 3; ++c) {
+          difference += std::abs(image.at(x, y)[c] - sample.at(0, 0)[c]);
+        }
+        found += difference < 1e-4f;
+      }
+    }
+    return found;
+  };
+  const int middle = image.width / 2;
+  for (const auto& [t, from, to] :
+       {std::tuple(1.0f, 0, middle), std::tuple(0.5f, middle, image.width)}) {
+    EXPECT_GT(count(image::heat_color(t), from, to), 2 * 10000u) << t;  // from two sides
+    EXPECT_EQ(count(image::heat_color(1.5f - t), from, to), 0u) << t;
   }
 }
 
