@@ -64,9 +64,9 @@ void check(const Job& job) {
     reject("--max-error and --max-bytes choose clusters and components",
            "Leave --clusters and --components out.");
   }
-  if (is_bounded && (job.method == "vq" || job.method == "pca")) {
-    reject(fmt::format("--method {} leaves nothing to choose within a bound", job.method),
-           "Take static, iterative or adaptive.");
+  if (is_bounded && job.method == "pca") {
+    reject("--max-error and --max-bytes are not for --method pca",
+           "Take static, which chooses one cluster where that is best.");
   }
 }
 

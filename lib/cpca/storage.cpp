@@ -10,8 +10,6 @@ Storage prepare_storage(std::span<const float> signal, std::span<const std::uint
     const StageTimer timer(report, "coherence");
     CoherenceOptions coherence = options.coherence;
     coherence.limits = options.limits;
-    coherence.limits.total /= 1.0 + kMaxAddedError;
-    coherence.limits.point /= 1.0 + kMaxAddedError;
     storage.coherence = make_coherent(signal, indices, row_count, coherence, encoding);
     storage.first_clusters = storage.coherence->first_clusters;
   }

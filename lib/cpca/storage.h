@@ -27,7 +27,7 @@ struct Storage {
 };
 
 /// make_coherent, then choose_weights; arguments as theirs. Adds stages "coherence" and "weights"
-/// to the report. What choose_weights adds to an error is left out of the limits of make_coherent.
+/// to the report. Both keep to the limits, which rounding of given weights may exceed.
 Storage prepare_storage(std::span<const float> signal, std::span<const std::uint32_t> indices,
                         int row_count, const StorageOptions& options, Encoding& encoding,
                         Report& report);

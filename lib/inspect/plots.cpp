@@ -130,7 +130,7 @@ Plot error_plot(const mesh::Scene& scene, const signal::TransferSignal& signal,
                 const EncodingError& stored, const cpca::Encoding& iterative) {
   std::vector<EncodingError> errors = errors_by_method(signal, iterative);
   errors.insert(errors.begin(), stored);
-  const std::string title = fmt::format("Squared error over the surface, {} clusters of {} vectors",
+  const std::string title = fmt::format("Error over the surface: {} clusters of {} vectors",
                                         iterative.cluster_count, iterative.component_count);
   return {"error", draw(scene, errors, title), to_csv(errors)};
 }

@@ -146,6 +146,26 @@ class Signal(ToolTest):
             self.assertIn(report["bytes"], [t["bytes"] for t in report["search"]["trials"]])
             self.assertLessEqual(report["bytes"], 20000)
 
+    def test_search_of_vector_quantisation_chooses_clusters_alone(self):
+        few = self.compress("--method", "vq", "--max-bytes", 8000)
+        self.assertLessEqual(few["bytes"], 8000)
+        self.assertGreater(few["bytes"], 7000)
+        report = self.compress("--method", "vq", "--max-error", few["relative_rmse"] / 2)
+        self.assertLessEqual(report["relative_rmse"], few["relative_rmse"] / 2)
+        self.assertEqual((few["component_count"], report["component_count"]), (0, 0))
+        self.assertLess(few["cluster_count"], report["cluster_count"])
+
+    def test_no_more_bytes_are_taken_than_are_of_use(self):
+        for method in ("static", "iterative", "adaptive"):
+            result = self.done("prt-compress", "--signal", self.signal, "--report", self.report,
+                               "--max-bytes", 100000000, "--method", method)
+            self.assertRegex(result.stderr, "--max-bytes is more than any use: [0-9]+ bytes hold")
+            report = self.load(self.report)
+            self.assertLess(report["bytes"], 1.2 * report["signal_bytes"])
+            self.assertLess(report["relative_rmse"], 1e-3)
+        result = self.done("prt-compress", "--signal", self.signal, "--max-bytes", 20000)
+        self.assertNotIn("--max-bytes", result.stderr)
+
     def test_a_list_of_numbers_has_a_point_each(self):
         header = npy_header(1500, 1).replace(b"(1500, 1)", b"(1500,)  ")
         values = [row[0] for row in curved_rows()]
@@ -233,7 +253,7 @@ class Contradictions(ToolTest):
                 ("for --method adaptive", "--max-components", 4),
                 ("choose clusters and components", "--max-error", 0.1, "--clusters", 5),
                 ("choose clusters and components", "--max-bytes", 1000, "--components", 5),
-                ("leaves nothing to choose", "--max-error", 0.1, "--method", "vq"),
+                ("are not for --method pca", "--max-bytes", 1000, "--method", "pca"),
                 ("--max-error", "--max-error", 0.1, "--max-bytes", 1000),
                 ("--norm requires --max-error", "--norm", "max"),
                 ("above 0", "--max-error", 0),

@@ -80,13 +80,12 @@ class Options(ToolTest):
         self.refused(FAILED, "no folder", "prt-inspect", self.quad, "--plots", f"{self.source}/")
         self.refused(FAILED, "Create .*missing first", "prt-inspect", self.quad, "--plots",
                      self.folder / "missing" / "plots")
-        self.done("prt-transfer", self.quad, "-o", self.folder / "quad.transfer.exr", "--rays", 16)
-        baked = self.folder / "quad.prt.glb"
-        self.done("prt-compress", self.quad, self.folder / "quad.transfer.exr", "-o", baked,
-                  "--method", "vq", "--clusters", 1)
+        transfer, baked = self.folder / "t.transfer.exr", self.folder / "quad.prt.glb"
+        self.done("prt-transfer", self.quad, "-o", transfer, "--rays", 16)
+        self.done("prt-compress", self.quad, transfer, "-o", baked, "--method", "vq", "--clusters",
+                  1)
         for name in ("plots", "slash/", "slash/"):  # made, made, and there already
-            self.done("prt-inspect", baked, "--plots", f"{self.folder}/{name}", "--transfer",
-                      self.folder / "quad.transfer.exr")
+            self.done("prt-inspect", baked, "--plots", f"{self.folder}/{name}")
             self.assertTrue((self.folder / name / "clusters.png").exists(), name)
 
     def test_a_model_is_no_transfer(self):

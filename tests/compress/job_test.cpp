@@ -117,6 +117,51 @@ TEST_F(CompressedModel, OfMatricesKeepsToTheBoundAsExitRadiance) {
   EXPECT_GT(stored({}).relative_rmse(), 1.2 * found);  // coefficients tell something else
 }
 
+TEST_F(CompressedModel, AutoIsNoWorseWithinABoundThanAnyFormat) {
+  constexpr double kLuck = 1.03;  // of searches that are not exhaustive
+  constexpr double kNone = 1e-4;  // errors below need not be less
+  const auto result = [&](std::optional<cpca::WeightFormat> weights) {
+    job_.storage.weights = weights;
+    Report report("test");
+    run(job_, report);
+    const Errors errors = stored({});
+    const double error =
+        job_.bound.norm == cpca::Norm::rmse ? errors.relative_rmse() : errors.relative_max();
+    if (job_.bound.max_error) {
+      EXPECT_LE(error, *job_.bound.max_error);
+    } else {
+      EXPECT_LE(report.json()["bytes"].get<std::size_t>(), *job_.bound.max_bytes);
+    }
+    return job_.bound.max_error ? report.json()["bytes"].get<double>() : error;
+  };
+  const auto compare = [&] {
+    const double chosen = result({});
+    for (const auto format : {cpca::WeightFormat::float32, cpca::WeightFormat::float16,
+                              cpca::WeightFormat::unorm16, cpca::WeightFormat::unorm8}) {
+      try {
+        EXPECT_LE(chosen, std::max(kNone, kLuck * result(format))) << cpca::name_of(format);
+      } catch (const Error& error) {  // too coarse
+        EXPECT_TRUE(job_.bound.max_error && format == cpca::WeightFormat::unorm8) << error.what();
+      }
+    }
+  };
+  for (const char* method : {"static", "iterative", "adaptive"}) {
+    job_.method = method;
+    for (const cpca::Norm norm : {cpca::Norm::rmse, cpca::Norm::maximum}) {
+      for (const double max_error : {0.1, 0.01, 0.002}) {
+        SCOPED_TRACE(std::string(method) + " within " + std::to_string(max_error));
+        job_.bound = {.max_error = max_error, .norm = norm, .max_bytes = {}};
+        compare();
+      }
+    }
+    for (const std::size_t max_bytes : {20000u, 60000u, 200000u}) {
+      SCOPED_TRACE(std::string(method) + " in " + std::to_string(max_bytes));
+      job_.bound = {.max_error = {}, .max_bytes = max_bytes};
+      compare();
+    }
+  }
+}
+
 TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
   job_.bound.max_error = 0.0005;
   job_.storage.weights = cpca::WeightFormat::unorm8;

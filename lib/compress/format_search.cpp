@@ -1,0 +1,236 @@
+#include "compress/format_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "compress/arrays.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "gltf/precomputed_transfer.h"
+
+namespace prt::compress {
+
+namespace {
+
+using cpca::WeightFormat;
+
+/// Rounding may take less than that share of max_error²: beyond, finer weights take less room.
+constexpr double kMostReserve = 0.5;
+/// Of relative errors: finer weights are of no use.
+constexpr double kNoRounding = 1e-4;
+/// Errors are measured again in the signal's own coordinates, which rounds differently.
+constexpr double kMargin = 1e-5;
+
+/// As gltf::stored_bytes counts.
+cpca::StorageCost cost_in_model(const Job& job, WeightFormat format) {
+  return {.bytes_per_point = 4,
+          .bytes_per_weight = cpca::bytes_of(format),
+          .weight_group = job.method == "adaptive" ? 1u : 4u,
+          .bytes_per_cluster = 2 * sizeof(std::uint16_t),
+          .max_component_count = gltf::kMaxComponentCount};
+}
+
+cpca::StorageCost cost_of(const Job& job, WeightFormat format) {
+  cpca::StorageCost cost = job.signal.empty() ? cost_in_model(job, format) : cost_in_arrays();
+  if (job.max_component_count > 0) cost.max_component_count = job.max_component_count;
+  if (job.method == "vq") cost.max_component_count = 0;
+  return cost;
+}
+
+/// Share of the bytes that weights take.
+double weight_share(cpca::StorageCost cost, const cpca::Encoding& encoding) {
+  const auto bytes = static_cast<double>(cost.bytes(encoding));
+  cost.bytes_per_weight = 0;
+  return 1.0 - static_cast<double>(cost.bytes(encoding)) / bytes;
+}
+
+/// One cluster with all vectors is exact, or as many as there can be; the signal itself is, too.
+std::size_t most_useful_bytes(const cpca::StorageCost& cost, const cpca::Size& size) {
+  const int most = std::min(static_cast<int>(size.dimension), cost.max_component_count);
+  return std::max(size.point_count * size.dimension * sizeof(float), cost.bytes(size, {1, most}));
+}
+
+class FormatSearch {
+ public:
+  FormatSearch(const Job& job, const Input& input, const cpca::Options& options, Report& report)
+      : job_(job),
+        input_(input),
+        options_(options),
+        json_(report.json()),
+        size_{input.transfer.values.size() / input.dimension, input.dimension} {
+    json_["search_cost"] = 0.0;
+    json_["search"] = {{"sampled_points", 0},
+                       {"seconds", 0.0},
+                       {"flops_cost", 0.0},
+                       {"trials", nlohmann::ordered_json::array()}};
+  }
+
+  Result run() {
+    for (const WeightFormat format : formats()) {
+      std::optional<Candidate> candidate = search(format);
+      if (!candidate) continue;
+      const bool is_fine = candidate->is_fine;
+      if (!best_ ||
+          std::tie(candidate->worth, candidate->next) < std::tie(best_->worth, best_->next))
+        best_ = std::move(candidate);
+      if (is_fine) break;
+    }
+    if (!best_) {
+      throw_failed("weights as small as --weights asks for are not within --max-error",
+                   {.found = fmt::format("a relative error of {:.6g}", least_error_),
+                    .expected = fmt::format("at most {:.6g}", *job_.bound.max_error),
+                    .advice = "Take --weights auto."});
+    }
+    log::info("the search took as long as {:.2f} encodings", json_["search_cost"].get<double>());
+    best_->result.encoded.stages = std::move(stages_);
+    best_->result.encoded.flops = flops_;
+    return std::move(best_->result);
+  }
+
+ private:
+  struct Candidate {
+    Result result;
+    double worth = 0.0, next = 0.0;  ///< less is better
+    bool is_fine = false;            ///< finer weights are not worth their bytes
+  };
+
+  /// The smallest first.
+  std::vector<WeightFormat> formats() const {
+    if (!input_.document) return {WeightFormat::float32};
+    if (job_.storage.weights) return {*job_.storage.weights};
+    return {WeightFormat::unorm8, WeightFormat::unorm16, WeightFormat::float16,
+            WeightFormat::float32};
+  }
+
+  cpca::Bound bound(WeightFormat format, double reserve) const {
+    cpca::Bound bound = job_.bound;
+    bound.cost = cost_of(job_, format);
+    if (bound.max_error) {
+      *bound.max_error *= std::sqrt((1.0 - reserve) / (1.0 + reclassification_share(job_)));
+    }
+    if (bound.max_bytes) {
+      bound.max_bytes = std::min(*bound.max_bytes, most_useful_bytes(bound.cost, size_));
+    }
+    return bound;
+  }
+
+  /// Nothing when rounding takes too much of the bound.
+  std::optional<Candidate> search(WeightFormat format) {
+    double reserve = format == WeightFormat::float32 ? 4.0 * kMargin : cpca::kMaxAddedError;
+    while (reserve < kMostReserve) {
+      const cpca::Bound bound = this->bound(format, reserve);
+      options_.checkpoint->begin_part(part_++);
+      Candidate candidate{{.encoded = encode(bound, format), .weights = {}, .reserve = reserve}};
+      const cpca::Encoding& encoding = candidate.result.encoded.encoding;
+      if (input_.document) candidate.result.weights = format;
+      cpca::Encoding stored = encoding;
+      cpca::convert_weights(format, stored);
+      const double exact = error(encoding), rounded = error(stored);
+      least_error_ = std::min(least_error_, rounded);
+      const double added = std::max(0.0, rounded * rounded - exact * exact);
+      if (is_within(job_, format, stored, input_)) {
+        const auto bytes = static_cast<double>(bound.cost.bytes(encoding));
+        candidate.worth = job_.bound.max_error ? bytes : rounded;
+        candidate.next = job_.bound.max_error ? rounded : bytes;
+        // Half floats take no more room than integers.
+        const double gain =
+            format == WeightFormat::unorm16 ? 0.0 : 0.5 * weight_share(bound.cost, encoding);
+        const double whole = job_.bound.max_error.value_or(rounded);
+        candidate.is_fine = added <= std::max(cpca::kMaxAddedError, gain) * whole * whole ||
+                            (job_.bound.max_bytes && added <= kNoRounding * kNoRounding);
+        return candidate;
+      }
+      const double share = added / (*job_.bound.max_error * *job_.bound.max_error);
+      reserve = std::max(2.0 * reserve, 1.1 * share);
+    }
+    return std::nullopt;
+  }
+
+  double error(const cpca::Encoding& encoding) const {
+    return cpca::relative_error(encoding, input_.transfer.values, job_.bound.norm,
+                                input_.point_weights);
+  }
+
+  cpca::Encoded encode(const cpca::Bound& bound, WeightFormat format) {
+    cpca::Found found = cpca::encode_within(bound, method_of(job_), input_.transfer.values,
+                                            static_cast<int>(input_.dimension), options_);
+    for (const cpca::Trial& trial : found.trials) {
+      nlohmann::ordered_json row = {{"cluster_count", trial.choice.cluster_count},
+                                    {"component_count", trial.choice.component_count},
+                                    {"relative_error", trial.error},
+                                    {"bytes", trial.bytes},
+                                    {"warm", trial.is_warm},
+                                    {"resumed", trial.is_resumed},
+                                    {"seconds", trial.seconds}};
+      if (input_.document) row["weights"] = cpca::name_of(format);
+      json_["search"]["trials"].push_back(row);
+    }
+    const auto add = [](nlohmann::ordered_json& sum, double part) {
+      sum = sum.get<double>() + part;
+    };
+    json_["search"]["sampled_points"] = found.sampled_count;
+    add(json_["search"]["seconds"], found.seconds);
+    add(json_["search"]["flops_cost"], found.flops_cost);
+    add(json_["search_cost"], found.cost);
+    const auto& stages = found.encoded.stages;
+    stages_.insert(stages_.end(), stages.begin(), stages.end());
+    flops_ += found.encoded.flops;
+    return std::move(found.encoded);
+  }
+
+  const Job& job_;
+  const Input& input_;
+  const cpca::Options& options_;
+  nlohmann::ordered_json& json_;
+  const cpca::Size size_;
+  std::optional<Candidate> best_;
+  std::uint32_t part_ = 0;
+  double least_error_ = std::numeric_limits<double>::infinity();
+  std::vector<cpca::Stage> stages_;
+  double flops_ = 0.0;
+};
+
+/// Once, for weights as small as they may be.
+void warn_of_useless_bytes(const Job& job, const Input& input) {
+  const WeightFormat format = job.storage.weights.value_or(WeightFormat::float32);
+  const std::size_t most = most_useful_bytes(
+      cost_of(job, format), {input.transfer.values.size() / input.dimension, input.dimension});
+  if (job.bound.max_bytes.value_or(0) <= most) return;
+  log::warning(
+      "--max-bytes is more than any use: {} bytes hold the signal as it is, no more are taken",
+      most);
+}
+
+}  // namespace
+
+cpca::Method method_of(const Job& job) {
+  return job.method == "adaptive"    ? cpca::Method::adaptive
+         : job.method == "iterative" ? cpca::Method::iterative
+                                     : cpca::Method::fixed;
+}
+
+double reclassification_share(const Job& job) {
+  // Of the largest error of a point it takes only what is left.
+  const bool spends = job.signal.empty() && !job.storage.is_incoherent && job.bound.max_error &&
+                      job.bound.norm == cpca::Norm::rmse;
+  return spends ? job.storage.coherence.error_budget : 0.0;
+}
+
+bool is_within(const Job& job, WeightFormat format, const cpca::Encoding& stored,
+               const Input& input) {
+  if (job.bound.max_bytes) return cost_of(job, format).bytes(stored) <= *job.bound.max_bytes;
+  return cpca::relative_error(stored, input.transfer.values, job.bound.norm, input.point_weights) <=
+         (1.0 - kMargin) * *job.bound.max_error;
+}
+
+Result search(const Job& job, const Input& input, const cpca::Options& options, Report& report) {
+  warn_of_useless_bytes(job, input);
+  return FormatSearch(job, input, options, report).run();
+}
+
+}  // namespace prt::compress
