@@ -73,7 +73,7 @@ void add_bounds(cli::Options& app, cpca::Bound& bound) {
          "Of all vertices (rmse), or of the worst (max) [rmse]")
       ->check(cli::IsMember({"rmse", "max"}))
       ->needs(max_error);
-  app.add_option("--max-bytes", bound.max_bytes, "The best result of this size, weights as floats")
+  app.add_option("--max-bytes", bound.max_bytes, "The best result in so many bytes, as stored")
       ->excludes(max_error);
 }
 

@@ -59,7 +59,7 @@ void check_signal(std::span<const float> signal, int dimension, const Options& o
   const std::size_t point_count = signal.size() / static_cast<std::size_t>(dimension);
   if (static_cast<std::size_t>(options.cluster_count) > point_count) {
     reject("more clusters than points", options.cluster_count,
-           fmt::format("at most {} clusters", point_count), "Ask for fewer with --clusters.");
+           fmt::format("at most {}, one a point", point_count), "Ask for fewer with --clusters.");
   }
   if (options.component_count > dimension) {
     reject("more components than coefficients", options.component_count,
