@@ -21,7 +21,16 @@ class Archive {
   /// Gives them back, in the same order.
   explicit Archive(std::vector<std::byte> bytes) : bytes_(std::move(bytes)), is_reading_(true) {}
 
+  /// Takes no members, only the room that they need.
+  static Archive counter() {
+    Archive archive;
+    archive.is_counting_ = true;
+    return archive;
+  }
+  void reserve(std::size_t byte_count) { bytes_.reserve(byte_count); }
+
   bool is_reading() const { return is_reading_; }
+  std::size_t byte_count() const { return end_; }
   std::vector<std::byte> take_bytes() { return std::move(bytes_); }
 
   template <class T>
@@ -43,6 +52,10 @@ class Archive {
     static_assert(std::is_trivially_copyable_v<T>);
     const std::size_t size = count * sizeof(T);
     if (size == 0) return;
+    if (is_counting_) {
+      end_ += size;
+      return;
+    }
     if (!is_reading_) bytes_.resize(end_ + size);
     assert(end_ + size <= bytes_.size());
     std::byte* const place = bytes_.data() + end_;
@@ -52,7 +65,7 @@ class Archive {
 
   std::vector<std::byte> bytes_;
   std::size_t end_ = 0;
-  bool is_reading_ = false;
+  bool is_reading_ = false, is_counting_ = false;
 };
 
 /// Lists the members of a state.
