@@ -25,15 +25,12 @@ Clusterer::Clusterer(const Rows& rows, std::size_t dimension, std::span<const fl
     : rows_(rows),
       subspaces_(means.size() / rows.stride, padded(rows.stride), capacity),
       labels_(rows.count),
-      all_clusters_(subspaces_.cluster_count()),
-      errors_(rows.count),
-      neighbour_count_(std::min(kNeighbours, subspaces_.cluster_count())) {
+      errors_(rows.count) {
   set_dimension(dimension);
   for (std::size_t k = 0; k < subspaces_.cluster_count(); ++k) {
     std::copy_n(&means[k * rows.stride], rows.stride, subspaces_.mean(k));
   }
-  std::iota(all_clusters_.begin(), all_clusters_.end(), 0u);
-  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+  count_clusters();
   neighbours_.resize(subspaces_.cluster_count() * neighbour_count_);
 }
 
@@ -45,6 +42,32 @@ void Clusterer::set_rows(const Rows& rows) {
 void Clusterer::set_labels(std::span<const std::uint32_t> labels) {
   labels_.assign(labels.begin(), labels.end());
   sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+}
+
+void Clusterer::grow(std::span<const std::uint32_t> parents,
+                     std::span<const std::uint32_t> labels) {
+  const std::size_t before = subspaces_.cluster_count(), after = before + parents.size(),
+                    width = std::min(kNeighbours, after);
+  std::vector<std::uint32_t> other_half(before), found(after * width);
+  std::iota(other_half.begin(), other_half.end(), 0u);
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    other_half[parents[i]] = static_cast<std::uint32_t>(before + i);
+  }
+  const auto set = [&](std::uint32_t k, std::uint32_t half, std::uint32_t known) {
+    const auto near = std::span(found).subspan(k * width, width);
+    std::fill(near.begin(), near.end(), k);
+    if (width > 1) near[1] = half;
+    const std::size_t first = half == k ? 1 : 2;
+    for (std::size_t i = first; i < width && i - first + 1 < neighbour_count_; ++i) {
+      near[i] = neighbours_[known * neighbour_count_ + i - first + 1];
+    }
+  };
+  for (std::uint32_t k = 0; k < before; ++k) set(k, other_half[k], k);
+  for (const std::uint32_t k : parents) set(other_half[k], k, k);
+  neighbours_ = std::move(found);
+  subspaces_.resize(after);
+  labels_.assign(labels.begin(), labels.end());
+  count_clusters();
 }
 
 void Clusterer::set_used(std::span<const std::uint32_t> used) {
@@ -61,7 +84,15 @@ void Clusterer::archive(Archive& archive) {
   archive.array(errors_);
   archive.array(neighbours_);
   archive.value(flops_);
-  if (archive.is_reading()) sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
+  if (archive.is_reading()) count_clusters();
+}
+
+/// What follows from how many there are and from the labels.
+void Clusterer::count_clusters() {
+  neighbour_count_ = std::min(kNeighbours, subspaces_.cluster_count());
+  all_clusters_.resize(subspaces_.cluster_count());
+  std::iota(all_clusters_.begin(), all_clusters_.end(), 0u);
+  sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
 }
 
 std::vector<Clusterer::Block> Clusterer::make_blocks() const {

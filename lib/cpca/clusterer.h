@@ -45,6 +45,9 @@ class Clusterer {
   void set_dimension(std::size_t dimension) { subspaces_.dimension = dimension; }
   /// Points to these clusters. Means and vectors are right after update().
   void set_labels(std::span<const std::uint32_t> labels);
+  /// One more cluster for each of `parents`, at the end, which knows the same neighbours. Points to
+  /// these clusters. Means and vectors are right after update().
+  void grow(std::span<const std::uint32_t> parents, std::span<const std::uint32_t> labels);
   /// The same points in other coordinates. Clusters keep their points and nothing else.
   void set_rows(const Rows& rows);
 
@@ -68,6 +71,7 @@ class Clusterer {
   void merge_neighbours(std::span<const Block> blocks);
   /// Returns how many there were.
   std::size_t fill_empty_clusters();
+  void count_clusters();
 
   Rows rows_;
   Subspaces subspaces_;
@@ -75,7 +79,7 @@ class Clusterer {
   std::vector<std::uint32_t> labels_, all_clusters_;
   std::vector<float> errors_;
   PointsByCluster sorted_;
-  std::size_t neighbour_count_;
+  std::size_t neighbour_count_ = 0;
   std::vector<std::uint32_t> neighbours_;  ///< cluster × neighbour_count_, the cluster itself first
   /// Of each block of a full pass, its nearest clusters and how near they are.
   std::vector<std::uint32_t> block_neighbours_;

@@ -45,6 +45,18 @@ void fit_components(std::span<const float> signal, std::span<const float> point_
   });
 }
 
+void fit_weights(std::span<const float> signal, Encoding& encoding) {
+  const auto n = static_cast<std::size_t>(encoding.dimension);
+  const auto cluster_count = static_cast<std::size_t>(encoding.cluster_count);
+  const auto count = static_cast<std::size_t>(encoding.component_count);
+  encoding.weights.resize(encoding.point_count * count);
+  const PointsByCluster sorted = sort_by_cluster(encoding.cluster_of_point, cluster_count);
+  parallel_for(cluster_count, 1, [&](std::size_t k, std::size_t) {
+    const std::span<float> basis = std::span(encoding.bases).subspan(k * count * n, count * n);
+    project(signal, sorted.of(k), {encoding.mean(static_cast<int>(k)), basis}, encoding.weights);
+  });
+}
+
 Encoding fit(std::span<const float> signal, int dimension, std::vector<std::uint32_t> labels,
              const Options& options) {
   Encoding encoding{

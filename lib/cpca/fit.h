@@ -21,7 +21,10 @@ std::vector<float> fit_means(std::span<const float> signal, std::size_t dimensio
 void fit_components(std::span<const float> signal, std::span<const float> point_weights,
                     Encoding& encoding);
 
-/// Both, with the counts and point weights of the options.
+/// Fills in the weights of an encoding that has all else.
+void fit_weights(std::span<const float> signal, Encoding& encoding);
+
+/// Means, then components, with the counts and point weights of the options.
 Encoding fit(std::span<const float> signal, int dimension, std::vector<std::uint32_t> labels,
              const Options& options);
 

@@ -22,7 +22,6 @@ void archive(Archive& archive, Encoded& encoded) {
   archive.array(encoding.means);
   archive.array(encoding.bases);
   archive.array(encoding.cluster_of_point);
-  archive.array(encoding.weights);
   archive.array(encoding.component_counts);
   archive.value(encoded.iterations);
   archive.value(encoded.flops);

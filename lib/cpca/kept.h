@@ -14,7 +14,7 @@ namespace prt::cpca {
 enum KeptStage : std::uint32_t { kSurveyStage, kTrialStage, kEncoderStage };
 
 void archive(Archive& archive, std::vector<Level>& levels);
-/// All but its stages.
+/// All but its stages, and weights of points, which follow from the rest (cpca/fit.h).
 void archive(Archive& archive, Encoded& encoded);
 
 int iteration_count(const std::vector<Level>& levels);

@@ -13,9 +13,11 @@
 #include "core/log.h"
 #include "core/stopwatch.h"
 #include "cpca/error_limits.h"
+#include "cpca/fit.h"
 #include "cpca/kept.h"
 #include "cpca/search_resize.h"
 #include "cpca/search_survey.h"
+#include "cpca/tighten.h"
 
 namespace prt::cpca {
 
@@ -31,6 +33,10 @@ constexpr double kWorthwhile = 0.015;
 constexpr double kMargin = 0.002, kMostMargin = 0.5;
 /// Clusters of an encoding with that many vectors more or fewer are still a good start.
 constexpr int kNearComponents = 2;
+/// Under the maximum norm the survey is asked for a root mean square error so many times smaller:
+/// tightened encodings of about these clusters and vectors keep to the bound. They grow to what
+/// they need from so many times the clusters; from very few they would grow too much.
+constexpr double kPeak = 1.8, kStart = 1.2;
 
 bool is_near(const Choice& a, const Choice& b) {
   return std::abs(a.component_count - b.component_count) <= kNearComponents &&
@@ -40,6 +46,7 @@ bool is_near(const Choice& a, const Choice& b) {
 struct Made {
   Encoded encoded;
   Trial trial;
+  double plain_seconds = 0.0, plain_flops = 0.0;  ///< before it was tightened
 };
 
 class Search {
@@ -47,6 +54,7 @@ class Search {
   Search(const Bound& bound, Method method, std::span<const float> signal, int dimension,
          const Options& options)
       : bound_(bound),
+        is_tight_(bound.max_error && bound.norm == Norm::maximum),
         aim_(bound),
         method_(method),
         signal_(signal),
@@ -63,6 +71,8 @@ class Search {
       learn();
     }
     if (!best_) reject();
+    if (best_ != last_) fit_weights(signal_, best_->encoded.encoding);
+    last_.reset();
     Found found{.encoded = std::move(best_->encoded),
                 .sampled_count = survey_.sampled_count,
                 .trials = std::move(trials_),
@@ -76,7 +86,8 @@ class Search {
 
  private:
   void survey() {
-    if (aim_.max_error) *aim_.max_error = (1.0 - margin_) * *bound_.max_error;
+    if (is_tight_) aim_.norm = Norm::rmse;
+    set_aim();
     survey_ = make_survey(aim_, method_, signal_, dimension_, options_);
     flops_ = survey_.flops;
     stages_.push_back({"survey", stopwatch_.seconds()});
@@ -95,14 +106,22 @@ class Search {
     return choose(survey_.model, aim_, size_, most_clusters(size_.point_count));
   }
 
+  /// Of encodings with the same number of vectors tighten() leaves the clusters that they need.
   bool is_known(const Choice& choice) const {
-    return std::any_of(trials_.begin(), trials_.end(),
-                       [&](const Trial& trial) { return trial.choice == choice; });
+    return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& trial) {
+      return is_tight_ ? trial.choice.component_count == choice.component_count
+                       : trial.choice == choice;
+    });
+  }
+
+  void set_aim() {
+    if (!bound_.max_error) return;
+    aim_.max_error = (1.0 - margin_) * *bound_.max_error / (is_tight_ ? kPeak : 1.0);
   }
 
   void aim_lower() {
     margin_ = std::min(kMostMargin, 2.0 * margin_);
-    *aim_.max_error = (1.0 - margin_) * *bound_.max_error;
+    set_aim();
   }
 
   std::optional<Choice> choose_next() {
@@ -136,7 +155,7 @@ class Search {
   void make(const Choice& choice) {
     const Stopwatch stopwatch;
     Options options = options_;
-    options.cluster_count = choice.cluster_count;
+    options.cluster_count = start_count(choice);
     options.component_count = choice.component_count;
     if (options.max_component_count == 0) {
       options.max_component_count =
@@ -145,18 +164,23 @@ class Search {
     std::vector<std::uint32_t> labels;
     const bool is_warm = last_ && is_near(choice, last_->trial.choice);
     if (is_warm) {
+      options.cluster_count =
+          std::min(options.cluster_count, 2 * last_->trial.choice.cluster_count);
       const std::vector<double> errors =
           weighted_errors(last_->encoded.encoding, signal_, options_.point_weights);
-      labels = resize_clusters(last_->encoded.encoding, errors, choice.cluster_count);
+      labels = resize_clusters(last_->encoded.encoding, errors, options.cluster_count);
       options.start = {labels, std::accumulate(errors.begin(), errors.end(), 0.0)};
     }
     last_.reset();
+    if (best_) best_->encoded.encoding.weights = {};  // room for another; fit_weights() knows them
     auto made = std::make_shared<Made>();
     made->trial = {.choice = choice, .is_warm = is_warm};
     const auto number = static_cast<std::uint32_t>(trials_.size());
     const auto members = [&](Archive& archive) {
       cpca::archive(archive, made->encoded);
       archive.value(made->trial.seconds);
+      archive.value(made->plain_seconds);
+      archive.value(made->plain_flops);
     };
     made->trial.is_resumed = restore_state(options_.checkpoint, {kTrialStage, number}, members);
     if (made->trial.is_resumed) {
@@ -164,13 +188,19 @@ class Search {
     } else {
       options.checkpoint_stage = kEncoderStage + number;
       made->encoded = encode(method_, signal_, dimension_, options);
+      made->plain_seconds = stopwatch.seconds();
+      made->plain_flops = made->encoded.flops;
+      if (is_tight_ && energy_ > 0.0)
+        tighten(signal_, point_limit(), most_clusters_worthwhile(choice), options, made->encoded);
       made->trial.seconds = stopwatch.seconds();
       store_state(options_.checkpoint, {kTrialStage, number}, members);
       if (options_.checkpoint != nullptr) options_.checkpoint->release(options.checkpoint_stage);
     }
-    const Encoding& encoding = made->encoded.encoding;
+    Encoding& encoding = made->encoded.encoding;
+    fit_weights(signal_, encoding);  // to the last bit as they will be found again
     made->trial.error = relative_error(encoding, signal_, bound_.norm, options.point_weights);
     made->trial.bytes = bound_.cost.bytes(encoding);
+    made->trial.choice.cluster_count = encoding.cluster_count;
     last_ = std::move(made);
   }
 
@@ -185,11 +215,11 @@ class Search {
     const auto& stages = last_->encoded.stages;
     stages_.insert(stages_.end(), stages.begin(), stages.end());
     if (!trial.is_warm) {
-      cold_seconds_ = trial.seconds;
-      cold_flops_ = last_->encoded.flops;
+      cold_seconds_ = last_->plain_seconds;
+      cold_flops_ = last_->plain_flops;
       learn_column();
     }
-    survey_.model.correct(trial.choice, trial.error);
+    survey_.model.correct(trial.choice, is_tight_ ? trial.error / kPeak : trial.error);
     bytes_share_ = static_cast<double>(trial.bytes) /
                    static_cast<double>(bound_.cost.bytes(size_, trial.choice));
     if (is_within(trial)) {
@@ -208,6 +238,7 @@ class Search {
   /// What an encoding tells about fewer vectors: iterative ones not of the largest errors, nor of
   /// levels in axes, which are worse than encodings that end there.
   void learn_column() {
+    if (is_tight_) return;
     if (method_ == Method::fixed) {
       survey_.model.correct(
           {last_->trial.choice.cluster_count,
@@ -225,6 +256,27 @@ class Search {
     survey_.model.correct(column);
   }
 
+  /// Clusters to encode with for a choice.
+  int start_count(const Choice& choice) const {
+    const double share = is_tight_ ? kStart : 1.0;
+    const int most = most_clusters(size_.point_count);
+    return std::clamp(static_cast<int>(share * choice.cluster_count), 1, most);
+  }
+
+  /// Weighted squared error that a point may have.
+  double point_limit() const {
+    return *bound_.max_error * *bound_.max_error * energy_ / static_cast<double>(size_.point_count);
+  }
+
+  /// More would take more room than what is known.
+  int most_clusters_worthwhile(Choice choice) const {
+    const int most = most_clusters(size_.point_count);
+    if (!best_) return most;
+    while (choice.cluster_count < most && bound_.cost.bytes(size_, choice) < best_->trial.bytes)
+      ++choice.cluster_count;
+    return choice.cluster_count;
+  }
+
   [[noreturn]] void reject() const {
     const auto least =
         std::min_element(trials_.begin(), trials_.end(),
@@ -240,7 +292,8 @@ class Search {
   }
 
   const Bound bound_;
-  Bound aim_;  ///< what the model is asked for: a little less than the bound
+  const bool is_tight_;  ///< encodings are tightened to the largest error of a point
+  Bound aim_;            ///< what the model is asked for: a little less than the bound
   const Method method_;
   const std::span<const float> signal_;
   const int dimension_;

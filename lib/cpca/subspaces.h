@@ -52,6 +52,13 @@ struct Subspaces {
         variances(cluster_count * vector_capacity) {}
 
   std::size_t cluster_count() const { return used.size(); }
+  /// Further clusters have no vectors.
+  void resize(std::size_t cluster_count) {
+    values.resize(cluster_count * (1 + capacity) * stride);
+    used.resize(cluster_count);
+    held.resize(cluster_count);
+    variances.resize(cluster_count * capacity);
+  }
   float* mean(std::size_t k) { return &values[k * (1 + capacity) * stride]; }
   const float* mean(std::size_t k) const { return &values[k * (1 + capacity) * stride]; }
   float* vector(std::size_t k, std::size_t i) { return mean(k) + (1 + i) * stride; }

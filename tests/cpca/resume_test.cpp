@@ -96,17 +96,18 @@ TEST_P(EncoderResume, TheFileHoldsAFewStatesHoweverManyLevels) {
 INSTANTIATE_TEST_SUITE_P(Methods, EncoderResume,
                          testing::Values(Method::fixed, Method::iterative, Method::adaptive));
 
-class SearchResume : public testing::TestWithParam<Method> {};
+class SearchResume : public testing::TestWithParam<std::pair<Method, Norm>> {};
 
 TEST_P(SearchResume, ContinuesToTheSameEncoding) {
+  const auto [method, norm] = GetParam();
   const auto signal = make_surface(3000, 30);
-  const Bound bound{.max_error = 0.03, .norm = Norm::rmse, .max_bytes = {}};
+  const Bound bound{.max_error = 0.03, .norm = norm, .max_bytes = {}};
   Options options{.iterations = 8};
-  const Found expected = encode_within(bound, GetParam(), signal, 30, options);
+  const Found expected = encode_within(bound, method, signal, 30, options);
   std::ptrdiff_t resumed = 0;
   interrupt([&](Checkpoint* checkpoint) {
     options.checkpoint = checkpoint;
-    const Found found = encode_within(bound, GetParam(), signal, 30, options);
+    const Found found = encode_within(bound, method, signal, 30, options);
     expect_same(found.encoded, expected.encoded);
     EXPECT_EQ(found.flops_cost, expected.flops_cost);
     ASSERT_EQ(found.trials.size(), expected.trials.size());
@@ -123,7 +124,10 @@ TEST_P(SearchResume, ContinuesToTheSameEncoding) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SearchResume,
-                         testing::Values(Method::fixed, Method::iterative, Method::adaptive));
+                         testing::Values(std::pair(Method::fixed, Norm::rmse),
+                                         std::pair(Method::iterative, Norm::rmse),
+                                         std::pair(Method::iterative, Norm::maximum),
+                                         std::pair(Method::adaptive, Norm::rmse)));
 
 }  // namespace
 }  // namespace prt::cpca
