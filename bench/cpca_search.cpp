@@ -3,7 +3,9 @@
 // Beside it every number of vectors that could be better is encoded at full strength: with as many
 // clusters as fit the least bytes so far, and when these are within the bound, with fewer and fewer
 // until log error can be interpolated in log clusters. From the vectors of the search it goes on to
-// fewer and to more of them until two in turn bring nothing.
+// fewer and to more of them until two in turn bring nothing. Under max these are encodings as they
+// come; then with one and two vectors fewer and more, and with clusters for 0.7 and 0.85 of the
+// search's bytes, encodings are tightened as the search does it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +16,7 @@
 
 #include "cpca/search.h"
 #include "cpca/search_survey.h"
+#include "cpca/tighten.h"
 #include "signal/npy.h"
 #include "signal/transfer_signal.h"
 
@@ -59,6 +62,11 @@ class Comparison {
         idle = try_out(i) ? 0 : idle + 1;
       }
     }
+    if (bound_.norm == cpca::Norm::maximum) {
+      for (int i = std::max(0, components - 2); i <= std::min(dimension, components + 2); ++i) {
+        for (const double share : {0.7, 0.85}) try_tightened(i, share * static_cast<double>(bytes));
+      }
+    }
     return static_cast<double>(bytes) / static_cast<double>(least_);
   }
 
@@ -88,13 +96,13 @@ class Comparison {
     return error;
   }
 
-  /// The most clusters with so many vectors that take no more than the least bytes; 0: none do.
-  int most_clusters(int components) const {
+  /// The most clusters with so many vectors that take no more than that; 0: none do.
+  int most_clusters(int components, std::size_t max_bytes) const {
     const auto bytes = [&](int clusters) {
       return bound_.cost.bytes(size_, {clusters, components});
     };
-    if (bytes(1) > least_) return 0;
-    const auto more = static_cast<int>((least_ - bytes(1)) / (bytes(2) - bytes(1)));
+    if (bytes(1) > max_bytes) return 0;
+    const auto more = static_cast<int>((max_bytes - bytes(1)) / (bytes(2) - bytes(1)));
     return std::min(1 + more, cpca::most_clusters(size_.point_count));
   }
 
@@ -117,9 +125,30 @@ class Comparison {
     }
   }
 
+  void try_tightened(int components, double bytes) {
+    const int start = most_clusters(components, static_cast<std::size_t>(bytes));
+    if (start == 0) return;
+    const cpca::Options options{.cluster_count = start, .component_count = components};
+    cpca::Encoded encoded =
+        cpca::encode_iterative(signal_.values, static_cast<int>(size_.dimension), options);
+    const double energy = cpca::weighted_energy(signal_.values, size_.point_count, {});
+    cpca::tighten(
+        signal_.values,
+        *bound_.max_error * *bound_.max_error * energy / static_cast<double>(size_.point_count),
+        cpca::most_clusters(size_.point_count), options, encoded);
+    const cpca::Choice found{encoded.encoding.cluster_count, components};
+    const std::size_t taken = bound_.cost.bytes(size_, found);
+    fmt::print("  tightened from {}: {} clusters, {} components: {} bytes\n", start,
+               found.cluster_count, components, taken);
+    std::fflush(stdout);
+    if (taken >= least_) return;
+    best_ = found;
+    least_ = taken;
+  }
+
   /// Whether so many vectors take less bytes than those before.
   bool try_out(int components) {
-    const int most = most_clusters(components);
+    const int most = most_clusters(components, least_);
     if (most == 0) return false;
     const std::optional<int> fewest = fewest_clusters(components, most);
     if (!fewest) return false;
