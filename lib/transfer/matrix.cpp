@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/mapped_array.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/range.h"
@@ -30,6 +31,9 @@ namespace {
 using linalg::ConstMatrixF;
 using linalg::MatrixF;
 using linalg::Transpose;
+
+// Visibility of more vertices than this holds, and all else of them, lies in files.
+constexpr std::size_t kMostVisibilityBytes = std::size_t{384} << 20;
 
 void check_options(const MatrixOptions& options) {
   check_range("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
@@ -90,7 +94,11 @@ MatrixTransfer::MatrixTransfer(const mesh::Scene& scene, const MatrixOptions& op
   moment_stride_ = padded_columns(incident_channel_count_ * n);
   matrix_stride_ = padded_columns(n);
   const Stopwatch watch;
-  index_ = std::make_unique<SceneIndex>(scene, ScratchOptions{.folder = options.scratch_folder});
+  ScratchOptions scratch{.folder = options.scratch_folder};
+  scratch.in_memory_vertices =
+      std::min(scratch.in_memory_vertices,
+               kMostVisibilityBytes / (sizeof(float) * sh::row_size(2 * options.band_count - 1)));
+  index_ = std::make_unique<SceneIndex>(scene, scratch);
   if (options.shadowed) index_->build_for_shadow_rays(options.ray_count);
   stats_.build_seconds = watch.seconds();
   visibility_ = compute_visibility(
@@ -208,6 +216,7 @@ std::uint64_t MatrixTransfer::compute_block(std::span<const std::uint32_t> verti
   for (std::size_t v = 0; v < count; ++v) {
     std::copy_n(&visibility_.rows[vertices[v] * m], m, &visible[v * m]);
   }
+  trim_mapped_arrays();
   linalg::gemm(1.0f, ConstMatrixF(visible.data(), count, m), Transpose::no,
                ConstMatrixF(triple_.data(), m, n * n), Transpose::no, 0.0f,
                MatrixF(direct.data(), count, n * n));

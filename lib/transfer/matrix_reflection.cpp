@@ -96,7 +96,7 @@ class MatrixReflection::Gather {
     const std::size_t n = owner_.function_count_;
     std::vector<double> rest(n);  // moments that the shadow rays found blocked, and these did not
     sh::turn_lobe(owner_.lobe_, owner_.index_.normal(vertex), rest);
-    const std::vector<float>& visible = owner_.visibility_.rows;
+    const MappedArray<float>& visible = owner_.visibility_.rows;
     const std::size_t visible_stride = visible.size() / owner_.visibility_.stand_ins.size();
     for (std::size_t i = 0; i < n; ++i) rest[i] -= double{visible[vertex * visible_stride + i]};
 

@@ -32,7 +32,7 @@ class VisibilityPass {
         directions_(make_directions(2 * static_cast<std::size_t>(options.ray_count), options.seed)),
         count_(sh::row_size(options.band_count)),
         lobe_(sh::disk_lobe(options.band_count, std::numbers::pi / 2)),
-        rows_(index.vertex_count() * count_),
+        rows_(index.vertex_count() * count_, index.scratch_folder()),
         buried_(index.vertex_count()) {}
 
   Visibility run() {
@@ -114,7 +114,7 @@ class VisibilityPass {
   const Directions directions_;
   const std::size_t count_;
   const std::vector<double> lobe_;  // the hemisphere about +Z
-  std::vector<float> rows_;
+  MappedArray<float> rows_;
   std::vector<std::uint8_t> buried_;
 };
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/mapped_array.h"
 #include "transfer/diffuse.h"
 #include "transfer/scene_index.h"
 
@@ -23,7 +24,7 @@ struct Visibility {
   /// band_count² coefficients for each vertex, world frame: the hemisphere in closed form minus the
   /// sum over blocked directions, exact on a convex body. Rows of buried vertices are filled in
   /// from their neighbours (transfer/buried.h).
-  std::vector<float> rows;
+  MappedArray<float> rows;
   /// For each vertex itself, or for a buried one the vertex whose surroundings stand for its own.
   std::vector<std::uint32_t> stand_ins;
 };
