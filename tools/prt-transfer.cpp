@@ -63,7 +63,7 @@ void add_matrix_options(cli::Options& app, Options& options) {
       ->check(cli::IsMember({"diffuse", "matrix"}));
   group(app.add_option("--rows", options.row_count,
                        "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"))
-      ->check(cli::Range(1, 256))
+      ->check(cli::Range(transfer::kMinMatrixRowCount, 256))
       ->check(cli::accepted_by([](const auto& n) { sh::hemisphere_functions(std::stoi(n)); }));
   group(app.add_option("--brdf", options.brdf,
                        std::string(brdf::kBrdfSyntax) + "; from-material if not given"))

@@ -39,6 +39,7 @@ void check_options(const MatrixOptions& options) {
   check_range("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
   check_range("ray count", options.ray_count, 1, kMaxRayCount);
   check_bounces(options.bounce_count, options.bounce_ray_count, options.shadowed);
+  check_range("row count of a transfer matrix", options.row_count, kMinMatrixRowCount, 256);
   sh::hemisphere_functions(options.row_count);
 }
 

@@ -32,12 +32,15 @@
 
 namespace prt::transfer {
 
+/// Fewer rows are no function of direction; a file of one row holds exit radiance itself.
+constexpr int kMinMatrixRowCount = 3;
+
 struct MatrixOptions {
   /// By brdf::kBrdfSyntax. Base colours are factors of the BRDFs that it names; from-material reads
   /// mesh::Material, at each vertex where there are textures.
   std::string brdf = "from-material";
   int band_count = 5;        ///< of the light, 1 to kMaxMatrixBandCount
-  int row_count = 25;        ///< of exit radiance: n², or n² - 1 without l = 1, m = 0
+  int row_count = 25;        ///< of exit radiance: n², or n² - 1 without l = 1, m = 0, 3 to 256
   int ray_count = 2048;      ///< per vertex, over its hemisphere (on average)
   int bounce_count = 0;      ///< of interreflection; needs shadowed
   int bounce_ray_count = 0;  ///< as of DiffuseOptions

@@ -58,6 +58,7 @@ class GlossyTest(ToolTest):
         self.refused(WRONG_USAGE, "--projection needs", *bake, "--projection", "least-squares")
         matrix = (*bake, "--mode", "matrix")
         self.refused(WRONG_USAGE, "n² - 1", *matrix, "--rows", 23)
+        self.refused(WRONG_USAGE, "--rows.*3", *matrix, "--rows", 1)
         self.refused(WRONG_USAGE, "not a BRDF", *matrix, "--brdf", "ggx:2")
         self.refused(WRONG_USAGE, "--bands above 8", *matrix, "--bands", 9)
         self.refused(WRONG_USAGE, "at most 8192", *matrix, "--bands", 8, "--rows", 144)

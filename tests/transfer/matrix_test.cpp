@@ -319,7 +319,8 @@ TEST(TransferMatrix, RejectsWhatItCannotHold) {
   const mesh::Scene scene = scene_of(sphere(1));
   for (const MatrixOptions& options :
        {MatrixOptions{.band_count = 9}, MatrixOptions{.band_count = 0},
-        MatrixOptions{.row_count = 23}, MatrixOptions{.ray_count = 0}}) {
+        MatrixOptions{.row_count = 23}, MatrixOptions{.row_count = 1},
+        MatrixOptions{.ray_count = 0}}) {
     EXPECT_THROW(bake(scene, "lambert", options), Error);
   }
 }
