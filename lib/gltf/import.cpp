@@ -27,7 +27,7 @@ ImportResult import_mesh_file(const std::filesystem::path& path, const ImportOpt
                                   .max_image_pixels = options.limits.max_image_pixels});
   mesh::to_world(scene, options.metres_per_unit, options.up);
   const auto repairs = mesh::prepare(scene, options.prepare, path.string());
-  if (options.base_color) color_bare_primitives(scene, *options.base_color);
+  color_bare_primitives(scene, options.base_color.value_or(Vec3(1.0f)));
   ImportResult result{Document::from_scene(scene), {}};
   for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
     const mesh::Primitive& primitive = scene.primitives[i];

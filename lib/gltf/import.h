@@ -12,7 +12,8 @@ namespace prt::gltf {
 
 struct ImportOptions {
   mesh::PrepareOptions prepare;
-  std::optional<Vec3> base_color;  ///< linear; of what has no material
+  /// Linear; of what has no material. None: white, but glTF keeps its own default.
+  std::optional<Vec3> base_color;
   float metres_per_unit = 1.0f;    ///< mesh files only: glTF has its unit and axes
   mesh::UpAxis up = mesh::UpAxis::y;
   Limits limits;

@@ -1,5 +1,7 @@
 #include "mesh/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,10 +64,7 @@ T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& 
 
 MetallicRoughness metallic_roughness_at(const Scene& scene, const Primitive& primitive,
                                         const Vec2& texcoord) {
-  static const Material kNone;
-  const Material& material = primitive.material < 0
-                                 ? kNone
-                                 : scene.materials[static_cast<std::size_t>(primitive.material)];
+  const Material& material = material_of(scene, primitive);
   MetallicRoughness result{material.metallic, material.roughness};
   if (material.metallic_roughness_image >= 0) {
     const Vec3 texel =
@@ -108,6 +107,26 @@ std::vector<std::uint32_t> Scene::indices() const {
     first += static_cast<std::uint32_t>(primitive.mesh.vertex_count());
   }
   return all;
+}
+
+const Material& default_material() {
+  static const Material kDefault = [] {
+    Material material;
+    material.metallic = material.roughness = 1.0f;
+    return material;
+  }();
+  return kDefault;
+}
+
+const Material& material_of(const Scene& scene, const Primitive& primitive) {
+  return primitive.material < 0 ? default_material()
+                                : scene.materials[static_cast<std::size_t>(primitive.material)];
+}
+
+std::string material_name(const Scene& scene, std::size_t index) {
+  if (index >= scene.materials.size()) return "no material";
+  const std::string& name = scene.materials[index].name;
+  return name.empty() ? fmt::format("material {}", index) : name;
 }
 
 Vec3 albedo_at(const Scene& scene, const Primitive& primitive, const Vec2& texcoord,
@@ -196,9 +215,7 @@ std::string mesh_hash(const Scene& scene) {
     });
     hasher.add(std::span<const std::uint32_t>(mesh.indices));
     hasher.add(std::span<const Vec4>(mesh.tangents));
-    add_reflection(hasher, primitive.material < 0
-                               ? Material()
-                               : scene.materials[static_cast<std::size_t>(primitive.material)]);
+    add_reflection(hasher, material_of(scene, primitive));
   }
   return hasher.hex();
 }

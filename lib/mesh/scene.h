@@ -22,7 +22,7 @@ struct TextureTransform {
 };
 
 /// What a surface reflects, in glTF's terms. Diffuse transfer looks at the base colour only; the
-/// rest is for glossy transfer.
+/// rest is for glossy transfer. By default what files without glTF's terms mean: white, matt.
 struct Material {
   std::string name;
   Vec4 base_color{1.0f, 1.0f, 1.0f, 1.0f};  ///< linear factor
@@ -46,7 +46,7 @@ struct Material {
 struct Primitive {
   std::string name;                         ///< of the node or mesh, for messages and reports
   TriangleMesh mesh;                        ///< world space; normals always present
-  int material = -1;                        ///< index into Scene::materials, -1: white
+  int material = -1;                        ///< index into Scene::materials, -1: default_material()
   int mesh_index = 0, primitive_index = 0;  ///< where it stands in the glTF file
 };
 
@@ -62,6 +62,12 @@ struct Scene {
   /// Triangles of all primitives, three indices each, of vertices numbered through.
   std::vector<std::uint32_t> indices() const;
 };
+
+/// Of a primitive without a material, as glTF 2.0 §3.9 has it: white, metallic 1, roughness 1.
+const Material& default_material();
+const Material& material_of(const Scene& scene, const Primitive& primitive);
+/// For messages and reports: its name, or its number in the file. Past the end, of none.
+std::string material_name(const Scene& scene, std::size_t index);
 
 /// Diffuse albedo (linear RGB, clamped to [0, 1]): factor × vertex colour × texture, bilinear.
 Vec3 albedo_at(const Scene& scene, const Primitive& primitive, const Vec2& texcoord,

@@ -61,14 +61,14 @@ void SurfaceLookup::make_reflectors(std::string_view text) {
   if (const auto brdf = brdf::parse_brdf(text)) {
     reflectors_.assign(scene_.materials.size() + 1, Reflector(*brdf));
   } else {
-    for (const mesh::Material& material : scene_.materials) {
-      if (material.has_unread_textures) {
-        log::warning("material \"{}\": textures of specular and anisotropy are ignored",
-                     material.name);
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+      if (scene_.materials[i].has_unread_textures) {
+        log::warning("{}: textures of specular and anisotropy are ignored",
+                     mesh::material_name(scene_, i));
       }
-      reflectors_.emplace_back(material);
+      reflectors_.emplace_back(scene_.materials[i]);
     }
-    reflectors_.emplace_back(mesh::Material());
+    reflectors_.emplace_back(mesh::default_material());
   }
   for (const Reflector& reflector : reflectors_) is_isotropic_.push_back(reflector.is_isotropic());
 }

@@ -87,10 +87,10 @@ MatrixSurfaces::MatrixSurfaces(const mesh::Scene& scene, const SurfaceOptions& o
     return;
   }
   find_used();
-  static const mesh::Material kNone;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     if (surfaces_[i].used)
-      fill(surfaces_[i], i < scene.materials.size() ? scene.materials[i] : kNone);
+      fill(surfaces_[i],
+           i < scene.materials.size() ? scene.materials[i] : mesh::default_material());
   }
 }
 

@@ -267,5 +267,16 @@ TEST_F(GltfImport, ColoursOnlyWhatHasNoMaterial) {
   EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[1], 0), Vec3(1, 0, 0));
 }
 
+// In glTF a primitive without a material is of metal.
+TEST_F(GltfImport, MeshFilesWithoutMaterialsAreMatt) {
+  const auto path = folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const mesh::Scene scene = import_file(path, {}).document.scene();
+  const mesh::MetallicRoughness found =
+      mesh::metallic_roughness_at_vertex(scene, scene.primitives.at(0), 0);
+  EXPECT_EQ(found.metallic, 0);
+  EXPECT_EQ(found.roughness, 1);
+  EXPECT_EQ(mesh::albedo_at_vertex(scene, scene.primitives[0], 0), Vec3(1));
+}
+
 }  // namespace
 }  // namespace prt::gltf

@@ -82,6 +82,21 @@ TEST(GlossyScenes, MaterialsAreSeenInTheFrameOfTheTangent) {
   }
 }
 
+TEST(GlossyScenes, WithoutAMaterialReflectsAsGltfsDefaultMaterial) {
+  mesh::Scene scene;
+  const int material = add_material(scene, Vec3(1.0f));
+  scene.materials.back().metallic = scene.materials.back().roughness = 1.0f;
+  add_quad(scene, {-9.0f, 0.0f, 9.0f}, {18.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -18.0f}, material);
+  const auto camera = look({2.0f, 1.5f, 1.0f}, {0.0f, 0.0f, 0.0f}, 20.0f);
+  const BandLimitedIllumination light(
+      sh::directional_light(5, Vec3(-2.0f, 1.0f, 0.5f).normalized(), Vec3(3.0f, 2.0f, 1.0f)));
+  Options options = small(2, 64, 0);
+  options.brdf = "from-material";
+  const Result expected = trace(scene, camera, light, options);
+  scene.primitives[0].material = -1;
+  EXPECT_EQ(trace(scene, camera, light, options).radiance.pixels, expected.radiance.pixels);
+}
+
 // A texture of two texels: what is beside their middles has the roughness and metallic of one.
 TEST(GlossyScenes, TexturesOfRoughnessAndMetallicAreThoseOfThePoint) {
   mesh::Scene scene;

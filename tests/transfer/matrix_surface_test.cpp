@@ -123,6 +123,17 @@ TEST(MatrixSurfaces, TexturesAreReadAtVertices) {
   }
 }
 
+TEST(MatrixSurfaces, WithoutAMaterialReflectsAsGltfsDefaultMaterial) {
+  const SurfaceOptions options{.band_count = 3, .row_count = 9};
+  mesh::Scene scene = scene_of(sphere(0));
+  scene.materials[0].metallic = scene.materials[0].roughness = 1;
+  mesh::Scene bare = scene;
+  bare.primitives[0].material = -1;
+  EXPECT_EQ(operator_at(MatrixSurfaces(bare, options, 1), bare, 0, 1),
+            operator_at(MatrixSurfaces(scene, options, 1), scene, 0, 1));
+  EXPECT_EQ(mesh::mesh_hash(bare), mesh::mesh_hash(scene));
+}
+
 TEST(MatrixSurfaces, LossesAreThoseOfTheMaterialsInUse) {
   mesh::Scene scene = scene_of(sphere(0));
   scene.materials[0].name = "shiny";
