@@ -196,6 +196,20 @@ void move_to_world(mesh::TriangleMesh& mesh, const Matrix4& world_from_local) {
   }
 }
 
+// Left at zero, which mesh::frame_at_vertex takes for no tangent.
+void drop_bad_tangents(mesh::TriangleMesh& mesh, const Where& where) {
+  std::size_t count = 0;
+  for (Vec4& tangent : mesh.tangents) {
+    const Vec3 direction(tangent.x, tangent.y, tangent.z);
+    if (is_finite(tangent) && direction.length() > 0.0f) continue;
+    tangent = Vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    ++count;
+  }
+  if (count == 0) return;
+  log::warning("{}: {}: {} of {} tangents are zero or not finite, as if these vertices had none",
+               where.file, where.element, count, mesh.tangents.size());
+}
+
 bool has_unit_normals(const mesh::TriangleMesh& mesh) {
   return std::all_of(mesh.normals.begin(), mesh.normals.end(),
                      [](const Vec3& n) { return std::abs(n.length() - 1.0f) < 0.01f; });
@@ -243,6 +257,7 @@ mesh::Scene Document::scene() const {
     primitive.name = name_of(model, use);
     primitive.mesh = read_geometry(model, from, where);
     check_ready(from, primitive.mesh, where);
+    drop_bad_tangents(primitive.mesh, where);
     check_transform(use.world_from_local, primitive.mesh, where);
     move_to_world(primitive.mesh, use.world_from_local);
     if (!has_unit_normals(primitive.mesh)) {

@@ -10,6 +10,7 @@ signal::TransferSignal bake_matrices(const mesh::Scene& scene, const MatrixOptio
                                      const std::filesystem::path& output, bool no_clobber,
                                      DiffuseStats& stats, Report& report) {
   MatrixTransfer transfer(scene, options, stats);
+  report.add_stage("brdf", transfer.surfaces().seconds());
   const auto computing = [&] { return stats.bounce_seconds + stats.matrix_seconds; };
   const double before = computing();
   const Stopwatch watch;

@@ -5,6 +5,7 @@
 
 #include "brdf/scene_material.h"
 #include "core/log.h"
+#include "core/stopwatch.h"
 #include "linalg/product.h"
 #include "sh/basis.h"
 #include "transfer/reflection.h"
@@ -17,9 +18,10 @@ using linalg::MatrixD;
 using linalg::Transpose;
 
 /// Lobes that some base colour or, with a texture, some metallic gives a colour.
-std::vector<std::size_t> lobes_of(brdf::MetallicRoughness material, bool textured) {
+std::vector<std::size_t> lobes_of(const mesh::Material& from) {
+  brdf::MetallicRoughness material = brdf::metallic_roughness(from);
   const auto colours = brdf::material_colours(material);
-  material.metallic = textured ? 0 : material.metallic;
+  material.metallic = from.metallic_roughness_image >= 0 ? 0 : material.metallic;
   const auto others = brdf::material_colours(material);
   std::vector<std::size_t> lobes;
   for (std::size_t i = 0; i < brdf::kMaterialLobeCount; ++i) {
@@ -81,16 +83,57 @@ MatrixSurfaces::MatrixSurfaces(const mesh::Scene& scene, const SurfaceOptions& o
       channel_count_(channel_count),
       operator_size_(static_cast<std::size_t>(options.row_count) *
                      sh::row_size(options.band_count)) {
-  if (const auto brdf = brdf::parse_brdf(options.brdf)) {
+  const Stopwatch watch;
+  const auto brdf = brdf::parse_brdf(options.brdf);
+  warn_of_missing_tangents(brdf ? &*brdf : nullptr);
+  if (brdf) {
+    Progress progress("brdf", 1, "matrices");
     named_ = make_operator(*brdf);
+    progress.advance(1);
     note_loss(*brdf, options.brdf);
-    return;
+  } else {
+    fill_surfaces();
   }
+  seconds_ = watch.seconds();
+}
+
+/// In mesh::frame_at_vertex the world's axes take the tangent's place.
+void MatrixSurfaces::warn_of_missing_tangents(const brdf::Brdf* named) const {
+  const auto is_anisotropic = [&](const mesh::Primitive& primitive) {
+    if (named) {
+      return std::any_of(named->lobes.begin(), named->lobes.end(),
+                         [](const auto& term) { return !term.lobe->is_isotropic(); });
+    }
+    const mesh::Material& material = mesh::material_of(scene_, primitive);
+    return material.has_anisotropy && material.anisotropy_strength > 0.0f;
+  };
+  const auto count =
+      std::count_if(scene_.primitives.begin(), scene_.primitives.end(), [&](const auto& primitive) {
+        return primitive.mesh.tangents.empty() && is_anisotropic(primitive);
+      });
+  if (count == 0) return;
+  log::warning(
+      "{} of {} primitives are anisotropic and have no TANGENT: the world's X axis, flattened onto "
+      "the surface, is their direction",
+      count, scene_.primitives.size());
+}
+
+void MatrixSurfaces::fill_surfaces() {
   find_used();
+  const auto material_at = [&](std::size_t i) -> const mesh::Material& {
+    return i < scene_.materials.size() ? scene_.materials[i] : mesh::default_material();
+  };
+  std::size_t matrix_count = 0;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (!surfaces_[i].used) continue;
+    for (const std::size_t lobe : lobes_of(material_at(i))) {
+      matrix_count += static_cast<std::size_t>(is_microfacet(lobe) ? surfaces_[i].count : 1);
+    }
+  }
+  Progress progress("brdf", matrix_count, "matrices");
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     if (surfaces_[i].used)
-      fill(surfaces_[i],
-           i < scene.materials.size() ? scene.materials[i] : mesh::default_material());
+      fill(surfaces_[i], material_at(i), mesh::material_name(scene_, i), progress);
   }
 }
 
@@ -108,32 +151,37 @@ void MatrixSurfaces::find_used() {
       surface.highest = std::max(surface.highest, roughness);
     }
   }
+  for (Surface& surface : surfaces_) {
+    if (!(surface.lowest < surface.highest)) continue;
+    surface.first = blend_roughness(surface.lowest).first;
+    surface.count = blend_roughness(surface.highest).first + 4 - surface.first;
+  }
 }
 
-void MatrixSurfaces::fill(Surface& surface, const mesh::Material& from) {
+void MatrixSurfaces::fill(Surface& surface, const mesh::Material& from, const std::string& name,
+                          Progress& progress) {
   if (from.has_unread_textures) {
-    log::warning("material \"{}\": textures of specular and anisotropy are ignored", from.name);
+    log::warning("{}: textures of specular and anisotropy are ignored", name);
   }
   surface.material = brdf::metallic_roughness(from);
   brdf::MetallicRoughness material = surface.material;
-  const bool blended = surface.lowest < surface.highest;
-  surface.first = blended ? blend_roughness(surface.lowest).first : 0;
-  const int count = blended ? blend_roughness(surface.highest).first + 4 - surface.first : 1;
-  for (const std::size_t lobe : lobes_of(material, from.metallic_roughness_image >= 0)) {
+  for (const std::size_t lobe : lobes_of(from)) {
     Term term{lobe, {}};
-    for (int k = 0; k < (is_microfacet(lobe) ? count : 1); ++k) {
-      material.roughness =
-          blended ? static_cast<double>(surface.first + k) / kRoughnessSteps : surface.lowest;
+    for (int k = 0; k < (is_microfacet(lobe) ? surface.count : 1); ++k) {
+      material.roughness = surface.count > 1
+                               ? static_cast<double>(surface.first + k) / kRoughnessSteps
+                               : surface.lowest;
       term.operators.push_back(
           make_operator({{{brdf::Colour(1), brdf::material_lobes(material)[lobe]}},
                          material.has_anisotropy ? material.anisotropy_rotation : 0.0}));
+      progress.advance(1);
     }
     surface.terms.push_back(std::move(term));
   }
   material.roughness = surface.lowest;
   material.base_color =
       brdf::Colour(double{from.base_color.x}, double{from.base_color.y}, double{from.base_color.z});
-  note_loss(brdf::make_brdf(material), from.name.empty() ? "a material" : from.name);
+  note_loss(brdf::make_brdf(material), name);
 }
 
 std::vector<float> MatrixSurfaces::make_operator(const brdf::Brdf& brdf) const {

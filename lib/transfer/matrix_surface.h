@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "brdf/brdf_matrix.h"
+#include "core/progress.h"
 #include "mesh/scene.h"
 #include "sh/hemisphere.h"
 
@@ -30,7 +31,8 @@ struct SurfaceOptions {
 std::vector<float> exit_operator(const brdf::BrdfMatrix& matrix, const SurfaceOptions& options);
 
 constexpr int kRoughnessSteps = 12;
-/// Of exit radiance, relative and RMS over the hemisphere and all light of five bands.
+/// Of exit radiance, relative and RMS over the hemisphere and all light of five bands, for
+/// isotropic materials of roughness 0.2 to 1.
 constexpr double kBlendError = 2e-3;
 
 /// The cubic through nodes first … first + 3 of the roughness.
@@ -42,17 +44,20 @@ RoughnessBlend blend_roughness(double roughness);
 
 /// What the bands cannot show of a BRDF.
 struct SurfaceLoss {
-  std::string name;  ///< of the material, or the BRDF that the options name
+  std::string name;  ///< of the material, or its number, or the BRDF that the options name
   brdf::BandLoss loss;
   double matrix_error;  ///< of an entry of B
 };
 
 class MatrixSurfaces {
  public:
-  /// Warns of losses. Throws Error (usage). The scene must outlive this.
+  /// Warns of losses, and of anisotropic surfaces without tangents. Throws Error (usage). The scene
+  /// must outlive this.
   MatrixSurfaces(const mesh::Scene& scene, const SurfaceOptions& options, int channel_count);
 
   const std::vector<SurfaceLoss>& losses() const { return losses_; }
+  /// That the BRDF matrices took.
+  double seconds() const { return seconds_; }
 
   /// Values that at_vertex() gives for a channel.
   std::size_t operator_size() const { return operator_size_; }
@@ -70,12 +75,15 @@ class MatrixSurfaces {
     bool used = false;
     brdf::MetallicRoughness material{};  ///< but its base colour, metallic and roughness
     double lowest = 1, highest = 0;      ///< roughness
-    int first = 0;                       ///< node
+    int first = 0, count = 1;            ///< nodes
     std::vector<Term> terms{};
   };
 
   void find_used();
-  void fill(Surface& surface, const mesh::Material& from);
+  void fill_surfaces();
+  void fill(Surface& surface, const mesh::Material& from, const std::string& name,
+            Progress& progress);
+  void warn_of_missing_tangents(const brdf::Brdf* named) const;
   std::vector<float> make_operator(const brdf::Brdf& brdf) const;
   void note_loss(const brdf::Brdf& brdf, const std::string& name);
   void add_material(const mesh::Primitive& primitive, std::size_t vertex,
@@ -89,6 +97,7 @@ class MatrixSurfaces {
   std::vector<float> named_;       ///< operator of the BRDF that the options name
   std::vector<Surface> surfaces_;  ///< or a material each, that of material -1 last
   std::vector<SurfaceLoss> losses_;
+  double seconds_ = 0;
 };
 
 }  // namespace prt::transfer
