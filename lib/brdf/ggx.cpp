@@ -54,6 +54,7 @@ class Ggx final : public Lobe {
   double importance(const Direction& eye) const override { return schlick(fresnel_, eye.z); }
   bool is_isotropic() const override { return alpha_x_ == alpha_y_; }
   double width() const override { return std::min(1.0, 2 * std::min(alpha_x_, alpha_y_)); }
+  std::optional<Imath::V2d> slope_scale() const override { return Imath::V2d(alpha_x_, alpha_y_); }
 
  private:
   Direction stretched(const Direction& w) const { return {alpha_x_ * w.x, alpha_y_ * w.y, w.z}; }

@@ -6,6 +6,7 @@
 #include <ImathVec.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace prt::brdf {
@@ -38,6 +39,10 @@ class Lobe {
 
   /// Angle (radians) over which the lobe varies, at most 1: where to look for its peak.
   virtual double width() const { return 1; }
+
+  /// Of a lobe that peaks where the half vector is the normal: how wide it is along x and y in the
+  /// half vector's slopes.
+  virtual std::optional<Imath::V2d> slope_scale() const { return std::nullopt; }
 };
 
 using LobePointer = std::shared_ptr<const Lobe>;

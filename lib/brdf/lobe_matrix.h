@@ -22,8 +22,9 @@ struct LobeMatrix {
   double kernel_energy = 0;  ///< ∫_H ∫_H (f s_z)² ds dv
 };
 
-/// 1 to sh::kMaxBandCount bands each; all processors. `error` is above the tolerance only where
-/// the quadrature gave up, which no lobe of brdf/lobe.h causes at the default tolerance.
+/// 1 to sh::kMaxBandCount bands each; all processors. At the default tolerance and five bands each
+/// it takes below 0.2 s of isotropic lobes and some seconds of anisotropic ones, however sharp.
+/// `error` is above the tolerance where the quadrature gave up.
 LobeMatrix compute_lobe_matrix(const Lobe& lobe, int row_band_count, int column_band_count,
                                double tolerance = kMatrixTolerance);
 

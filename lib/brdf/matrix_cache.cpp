@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 // A file is the description as text, a zero, error, exit_energy, kernel_energy and the entries of B
 // as doubles of this machine, and the hash of all this. The version counts changes of the layout
 // and of what the lobes and the quadrature compute.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 std::string describe(const Lobe& lobe, int row_band_count, int column_band_count,
                      double tolerance) {

@@ -38,6 +38,7 @@ class Ward final : public Lobe {
 
   bool is_isotropic() const override { return alpha_x_ == alpha_y_; }
   double width() const override { return std::min(1.0, 2 * std::min(alpha_x_, alpha_y_)); }
+  std::optional<Imath::V2d> slope_scale() const override { return Imath::V2d(alpha_x_, alpha_y_); }
 
  private:
   double gaussian(const Direction& h) const {

@@ -140,7 +140,8 @@ TEST(LobeMatrix, MatchesDenseQuadrature) {
 
 // Sharp lobes, against the lobe's own sampler, which knows where its peak is.
 TEST(LobeMatrix, MatchesMonteCarlo) {
-  for (const auto& lobe : {ggx(0.05, 0.05, Fresnel::facing), ward(0.1, 0.4), phong(200)}) {
+  for (const auto& lobe :
+       {ggx(0.05, 0.05, Fresnel::facing), ggx(0.25, 0.001), ward(0.1, 0.4), phong(200)}) {
     Pcg32 random(6);
     constexpr int kCount = 100000;
     std::vector<double> sums(16 * 9), squares(16 * 9);
