@@ -116,9 +116,12 @@ void warn_of_losses(const BrdfMatrix& matrix, const std::string& name, double to
   if (matrix.error > static_cast<double>(kMaterialLobeCount) * tolerance) {
     log::warning("{}: BRDF matrix accurate to {:.1e} only", name, matrix.error);
   }
-  if (matrix.loss.kernel > kSharpKernelLoss) {
-    log::warning("{}: too sharp for {} and {} bands: {:.0f}% of its energy is lost", name,
-                 matrix.row_band_count, matrix.column_band_count, 100 * matrix.loss.kernel);
+  if (matrix.loss.exit > kSharpExitLoss || matrix.loss.kernel > kSharpKernelLoss) {
+    log::warning(
+        "{}: too sharp for {} and {} bands: {:.2g}% of the energy of its answer to light of these "
+        "bands is lost, {:.0f}% of that to unlimited light",
+        name, matrix.row_band_count, matrix.column_band_count, 100 * matrix.loss.exit,
+        100 * matrix.loss.kernel);
   }
 }
 

@@ -20,8 +20,9 @@ struct BandLoss {
   double kernel = 0;
 };
 
-/// Kernel losses from here on are worth a warning.
-constexpr double kSharpKernelLoss = 0.5;
+/// Losses from here on are worth a warning: of `exit`, a tenth of the radiance (RMS) in light of
+/// these bands; of `kernel`, nearly all that makes the reflection of a brighter detail sharp.
+constexpr double kSharpExitLoss = 0.01, kSharpKernelLoss = 0.9;
 
 struct BrdfMatrix {
   int row_band_count = 0;
@@ -37,8 +38,8 @@ BrdfMatrix brdf_matrix(const Brdf& brdf, int row_band_count, int column_band_cou
                        double tolerance = kMatrixTolerance,
                        const std::filesystem::path& folder = default_cache_folder());
 
-/// Warns, with the figure, when `loss.kernel` is above kSharpKernelLoss, and when the quadrature
-/// missed the tolerance. `name` is the material's, for the message.
+/// Warns, with the figures, when a loss is above kSharpExitLoss or kSharpKernelLoss, and when the
+/// quadrature missed the tolerance. `name` is the material's, for the message.
 void warn_of_losses(const BrdfMatrix& matrix, const std::string& name,
                     double tolerance = kMatrixTolerance);
 

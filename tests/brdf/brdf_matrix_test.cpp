@@ -68,7 +68,8 @@ TEST(BrdfMatrix, LossGrowsWithSharpnessAndShrinksWithBands) {
   };
   const BandLoss soft = loss(phong(10), 5, 5), sharp = loss(phong(100), 5, 5);
   EXPECT_LT(soft.kernel, 0.05);
-  EXPECT_GT(sharp.kernel, kSharpKernelLoss);
+  EXPECT_GT(loss(phong(500), 5, 5).kernel, kSharpKernelLoss);
+  EXPECT_LT(loss(phong(50), 5, 5).kernel, kSharpKernelLoss);
   EXPECT_LT(loss(phong(100), 8, 8).kernel, sharp.kernel);
   EXPECT_GT(loss(phong(10), 4, 5).exit, 10 * soft.exit);
   // A mirror shows all of band-limited light, and nearly nothing of all light.
