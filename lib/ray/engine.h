@@ -73,4 +73,8 @@ std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles);
 /// metres.
 Vec3 offset_origin(const Vec3& p, const Vec3& n, float magnitude = 1.0f / 32.0f);
 
+/// The power of two, which rounds nothing, that brings coordinates up to `largest` into [-2, 2]:
+/// so scaled, a scene of any size is traced alike, and no product vanishes or overflows.
+float unit_scale(float largest);
+
 }  // namespace prt::ray

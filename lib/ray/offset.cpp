@@ -20,4 +20,8 @@ Vec3 offset_origin(const Vec3& p, const Vec3& n, float magnitude) {
   return p + n * (largest * kRelativeStep);
 }
 
+float unit_scale(float largest) {
+  return largest > 0.0f ? std::ldexp(1.0f, std::clamp(-std::ilogb(largest), -126, 126)) : 1.0f;
+}
+
 }  // namespace prt::ray

@@ -33,8 +33,8 @@ Result trace(const mesh::Scene& scene, const camera::Camera& camera,
 
   const Stopwatch tracing;
   camera::Camera centred = camera;
-  centred.eye -= surfaces.centre();
-  centred.target -= surfaces.centre();
+  centred.eye = (centred.eye - surfaces.centre()) * surfaces.scale();
+  centred.target = (centred.target - surfaces.centre()) * surfaces.scale();
   const Job job{surfaces, *engine, centred, illumination, options, result.sample_count};
   KeptTiles kept(result, options.checkpoint,
                  checkpoint_key(scene, camera, options, result.sample_count));

@@ -89,7 +89,8 @@ void SurfaceLookup::add_triangles() {
                                   static_cast<std::uint32_t>(p));
   }
   if (!box.isEmpty()) centre_ = box.min * 0.5f + box.max * 0.5f;
-  for (Vec3& position : positions_) position -= centre_;
+  if (!box.isEmpty()) scale_ = ray::unit_scale(largest_coordinate(box.max * 0.5f - box.min * 0.5f));
+  for (Vec3& position : positions_) position = (position - centre_) * scale_;
 }
 
 std::optional<SurfacePoint> SurfaceLookup::surface_at(const ray::Hit& hit,

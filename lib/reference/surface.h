@@ -48,6 +48,8 @@ class SurfaceLookup {
   /// The middle of the scene. All that is traced is relative to it: small scenes far from the
   /// origin keep their precision.
   const Vec3& centre() const { return centre_; }
+  /// And in these units: scenes of any size are traced alike.
+  float scale() const { return scale_; }
   ray::Triangles triangles() const { return {positions_, indices_}; }
 
   /// What a ray in `direction` has hit. Nothing where it reflects nothing: the back of a surface.
@@ -59,7 +61,8 @@ class SurfaceLookup {
 
   const mesh::Scene& scene_;
   Vec3 centre_{0.0f};
-  std::vector<Vec3> positions_;  // relative to the centre
+  float scale_ = 1.0f;
+  std::vector<Vec3> positions_;  // relative to the centre, scaled
   std::vector<std::uint32_t> indices_;
   std::vector<std::uint32_t> primitive_of_triangle_;
   std::vector<std::uint32_t> first_triangle_;  // of each primitive

@@ -54,6 +54,8 @@ SceneIndex::SceneIndex(const mesh::Scene& scene, const ScratchOptions& scratch)
     throw_failed("too many vertices or triangles", {.expected = "fewer than 2^32 - 1"});
   }
   if (vertex_count() > 0) centre_ = box.min * 0.5f + box.max * 0.5f;
+  if (vertex_count() > 0)
+    scale_ = ray::unit_scale(largest_coordinate(box.max * 0.5f - box.min * 0.5f));
 
   for (std::size_t v = 0; v < vertex_count(); ++v) ray::check_position(position(v), v);
   for (const mesh::Primitive& primitive : scene.primitives) {
@@ -71,9 +73,8 @@ ray::TriangleSource SceneIndex::triangle_source() const {
             const Place at = triangle_place(t);
             const mesh::TriangleMesh& mesh = scene_.primitives[at.primitive].mesh;
             const std::uint32_t* corner = &mesh.indices[3 * at.local];
-            return std::array{mesh.positions[corner[0]] - centre_,
-                              mesh.positions[corner[1]] - centre_,
-                              mesh.positions[corner[2]] - centre_};
+            return std::array{traced(mesh.positions[corner[0]]), traced(mesh.positions[corner[1]]),
+                              traced(mesh.positions[corner[2]])};
           }};
 }
 
@@ -194,7 +195,7 @@ const Vec3& SceneIndex::normal(std::size_t vertex) const {
 
 Vec3 SceneIndex::position(std::size_t vertex) const {
   const Place at = vertex_place(vertex);
-  return scene_.primitives[at.primitive].mesh.positions[at.local] - centre_;
+  return traced(scene_.primitives[at.primitive].mesh.positions[at.local]);
 }
 
 std::array<std::uint32_t, 3> SceneIndex::triangle(std::size_t triangle) const {

@@ -54,15 +54,15 @@ class SceneIndex {
   std::size_t vertex_count() const { return vertex_offsets_.back(); }
   std::size_t triangle_count() const { return triangle_offsets_.back(); }
   const Vec3& normal(std::size_t vertex) const;
-  /// Relative to the scene's centre.
+  /// Relative to the scene's centre, in units of about its size, as all that is traced.
   Vec3 position(std::size_t vertex) const;
   /// Where the vertex's rays start: off the surface by ray::offset_origin's step and, at the edge
   /// of a surface, about as much away from the edge: the rays of a floor's edge start in front of
-  /// the wall that stands there, and no light comes in between. Relative to the scene's centre, as
-  /// all that is traced: small scenes far from the origin keep their precision. The same for
-  /// vertices of equal position and normal.
+  /// the wall that stands there, and no light comes in between. As position(): scenes far from the
+  /// origin keep their precision, and any unit of length is right. The same for vertices of equal
+  /// position and normal.
   const Vec3& ray_origin(std::size_t vertex) const { return ray_origins_[vertex]; }
-  /// Largest coordinate around the vertex, relative to the centre; the unit of rounding errors.
+  /// Largest coordinate around the vertex, as of position(); the unit of rounding errors.
   float magnitude(std::size_t vertex) const { return magnitudes_[vertex]; }
   /// Vertices of a triangle, numbered through.
   std::array<std::uint32_t, 3> triangle(std::size_t triangle) const;
@@ -78,6 +78,7 @@ class SceneIndex {
   void find_ray_origins(const SpatialGrid& grid);
   void add_triangles(MappedArray<Surroundings>& around) const;
   void share_between_equals(const SpatialGrid& grid, MappedArray<Surroundings>& around) const;
+  Vec3 traced(const Vec3& p) const { return (p - centre_) * scale_; }
   static Place place(const std::vector<std::size_t>& offsets, std::size_t number);
   ray::TriangleSource triangle_source() const;
   std::unique_ptr<ray::Engine> make_embree_engine() const;
@@ -86,6 +87,7 @@ class SceneIndex {
   const mesh::Scene& scene_;
   std::vector<std::size_t> vertex_offsets_, triangle_offsets_;
   Vec3 centre_{0.0f};
+  float scale_ = 1.0f;
   std::filesystem::path scratch_folder_;
   MappedArray<float> magnitudes_;
   MappedArray<Vec3> ray_origins_;

@@ -247,6 +247,25 @@ TEST(PathTracer, ATriangleOfAnySizeAndPlaceNeverHidesItsOwnSky) {
   }
 }
 
+TEST(PathTracer, TheUnitOfLengthChangesNothing) {
+  mesh::Scene scene;
+  add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, Vec3(0.7f)));
+  add_quad(scene, {-0.5f, 0.5f, 0.5f}, {1, 0, 0}, {0, 0.25f, -1}, 0);
+  const auto camera = look({0.5f, 1.5f, 2.5f}, {0.0f, 0.25f, 0.0f}, 30.0f);
+  const Result expected = trace(scene, camera, kWhite, small(8, 64, 1));
+  for (const float scale : {0x1p-60f, 0x1p60f}) {
+    mesh::Scene scaled = scene;
+    for (mesh::Primitive& primitive : scaled.primitives) {
+      for (Vec3& p : primitive.mesh.positions) p *= scale;
+    }
+    camera::Camera from = camera;
+    from.eye *= scale, from.target *= scale;
+    EXPECT_EQ(trace(scaled, from, kWhite, small(8, 64, 1)).radiance.pixels,
+              expected.radiance.pixels)
+        << scale;
+  }
+}
+
 TEST(PathTracer, EmptySceneShowsTheBackground) {
   const sh::Light light = sh::directional_light(3, Vec3(0.0f, 0.0f, -1.0f), Vec3(1.0f, 2.0f, 3.0f));
   const auto camera = look({0.0f, 0.0f, 4.0f}, {0.0f, 0.0f, 0.0f}, 40.0f);
