@@ -1,5 +1,6 @@
 // The small products of transfer matrices (lib/transfer/matrix_kernels.h) beside the same by the
-// installed BLAS, SGEMM of large matrices and the peak of the arithmetic units, all threads:
+// installed BLAS, the large one, which is the BLAS's, SGEMM of large matrices and the peak of the
+// arithmetic units, all threads:
 //   bench_matrix
 // Best of several runs, interleaved, since other load comes and goes.
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "linalg/product.h"
 #include "peak.h"
 #include "transfer/matrix_kernels.h"
+#include "transfer/reflection.h"
 
 namespace {
 
@@ -66,12 +68,15 @@ struct Kernel {
 
 int main() {
   // Shapes of 25 rows, 25 coefficients and three channels, padded.
+  const std::size_t block = transfer::kVertexBlock;
   std::vector<Kernel> kernels{{"SGEMM 1024 x 1024 x 1024", 1024, 1024, 1024, true}};
   const auto add = [&](const char* name, std::size_t rows, std::size_t depth, std::size_t columns) {
     kernels.push_back(
         {fmt::format("{} {} x {} x {}", name, rows, depth, columns), rows, depth, columns, false});
     kernels.push_back({"  by BLAS", rows, depth, columns, true});
   };
+  kernels.push_back(
+      {fmt::format("visibility, triple products {} x 81 x 625", block), block, 81, 625, true});
   add("directions of 1024 corners", 25, 25, 1024);
   add("what a corner sends to 4", 4, 25, 80);
   add("what a corner sends to 16", 16, 25, 80);
