@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "cpca/superclusters.h"
 #include "gl/context.h"
 #include "image/false_color.h"
@@ -99,9 +100,19 @@ struct Renderer::Drawings {
       superclusters.emplace(label_colors(supercluster_labels(*model.transfer)), index_count,
                             positions, indices);
     }
-    if (model.signal) uncompressed.emplace(model, exit, positions, indices);
+    if (model.signal) add_uncompressed(model);
     if (model.transfer && model.signal)
       error.emplace(error_colors(model), model.indices.size(), positions, indices);
+  }
+
+  /// Matrices may be too many for a texture; compressed transfer is drawn all the same.
+  void add_uncompressed(const Model& model) {
+    try {
+      uncompressed.emplace(model, exit, positions, indices);
+    } catch (const Error& reason) {
+      if (!model.transfer) throw;
+      log::warning("uncompressed transfer cannot be drawn: {}", reason.what());
+    }
   }
 
   void draw(const View& view, int samples) {
