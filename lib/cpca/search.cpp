@@ -34,9 +34,8 @@ constexpr double kMargin = 0.002, kMostMargin = 0.5;
 /// Clusters of an encoding with that many vectors more or fewer are still a good start.
 constexpr int kNearComponents = 2;
 /// Under the maximum norm the survey is asked for a root mean square error so many times smaller:
-/// tightened encodings of about these clusters and vectors keep to the bound. They grow to what
-/// they need from so many times the clusters; from very few they would grow too much.
-constexpr double kPeak = 1.8, kStart = 1.2;
+/// the clusters that this takes are where tightening starts.
+constexpr double kPeak = 1.8;
 
 bool is_near(const Choice& a, const Choice& b) {
   return std::abs(a.component_count - b.component_count) <= kNearComponents &&
@@ -155,7 +154,7 @@ class Search {
   void make(const Choice& choice) {
     const Stopwatch stopwatch;
     Options options = options_;
-    options.cluster_count = start_count(choice);
+    options.cluster_count = choice.cluster_count;
     options.component_count = choice.component_count;
     if (options.max_component_count == 0) {
       options.max_component_count =
@@ -164,8 +163,6 @@ class Search {
     std::vector<std::uint32_t> labels;
     const bool is_warm = last_ && is_near(choice, last_->trial.choice);
     if (is_warm) {
-      options.cluster_count =
-          std::min(options.cluster_count, 2 * last_->trial.choice.cluster_count);
       const std::vector<double> errors =
           weighted_errors(last_->encoded.encoding, signal_, options_.point_weights);
       labels = resize_clusters(last_->encoded.encoding, errors, options.cluster_count);
@@ -254,13 +251,6 @@ class Search {
     // The adaptation is a level of its own.
     column.errors.resize(static_cast<std::size_t>(last_->trial.choice.component_count) + 1);
     survey_.model.correct(column);
-  }
-
-  /// Clusters to encode with for a choice.
-  int start_count(const Choice& choice) const {
-    const double share = is_tight_ ? kStart : 1.0;
-    const int most = most_clusters(size_.point_count);
-    return std::clamp(static_cast<int>(share * choice.cluster_count), 1, most);
   }
 
   /// Weighted squared error that a point may have.
