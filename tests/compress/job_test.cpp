@@ -145,16 +145,16 @@ TEST_F(CompressedModel, AutoIsNoWorseWithinABoundThanAnyFormat) {
       }
     }
   };
-  for (const char* method : {"static", "iterative", "adaptive"}) {
+  for (const char* method : {"iterative", "adaptive"}) {
     job_.method = method;
     for (const cpca::Norm norm : {cpca::Norm::rmse, cpca::Norm::maximum}) {
-      for (const double max_error : {0.1, 0.01, 0.002}) {
+      for (const double max_error : {0.01, 0.002}) {
         SCOPED_TRACE(std::string(method) + " within " + std::to_string(max_error));
         job_.bound = {.max_error = max_error, .norm = norm, .max_bytes = {}};
         compare();
       }
     }
-    for (const std::size_t max_bytes : {20000u, 60000u, 200000u}) {
+    for (const std::size_t max_bytes : {20000u, 60000u}) {
       SCOPED_TRACE(std::string(method) + " in " + std::to_string(max_bytes));
       job_.bound = {.max_error = {}, .max_bytes = max_bytes};
       compare();
