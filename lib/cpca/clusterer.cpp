@@ -206,15 +206,16 @@ std::size_t Clusterer::fill_empty_clusters() {
   if (!any) return 0;
   std::vector<std::uint32_t> worst(labels_.size());
   std::iota(worst.begin(), worst.end(), 0u);
+  const auto weighted = [&](std::uint32_t p) { return rows_.weight(p) * errors_[p]; };
   std::sort(worst.begin(), worst.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return errors_[a] != errors_[b] ? errors_[a] > errors_[b] : a < b;
+    return weighted(a) != weighted(b) ? weighted(a) > weighted(b) : a < b;
   });
   auto next = worst.begin();
   std::size_t filled_count = 0;
   for (std::size_t k = 0; k < left.size(); ++k) {
     if (left[k] != 0) continue;
     while (next != worst.end() && left[labels_[*next]] <= 1) ++next;
-    if (next == worst.end() || errors_[*next] == 0.0f) break;
+    if (next == worst.end() || weighted(*next) == 0.0f) break;
     --left[labels_[*next]];
     labels_[*next] = static_cast<std::uint32_t>(k);
     subspaces_.used[k] = subspaces_.held[k] = 0;

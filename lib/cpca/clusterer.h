@@ -31,7 +31,7 @@ class Clusterer {
     std::size_t moved_count = 0;  ///< points
   };
   /// Every point to the cluster of least error, all clusters tried or only near ones. Clusters that
-  /// run empty take the points that are worst approximated, as long as there is error left.
+  /// run empty take the points that add most to the error, as long as there is any left.
   /// With a vector_cost, what is least is the error plus that for each vector of the cluster.
   Pass classify(bool full, float vector_cost = 0.0f);
 

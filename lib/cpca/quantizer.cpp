@@ -81,6 +81,10 @@ class Quantizer {
     return {&result_.means[cluster * dimension_], dimension_};
   }
 
+  double weight(std::size_t point) const {
+    return point_weights_.empty() ? 1.0 : double{point_weights_[point]};
+  }
+
   void classify() {
     const NearestMean nearest(result_.means, origin_);
     parallel_for(result_.labels.size(), kPointBlock, [&](std::size_t begin, std::size_t end) {
@@ -111,9 +115,9 @@ class Quantizer {
     double* sum = &sums_[cluster * dimension_];
     for (std::uint32_t point : points) {
       const float* x = &signal_[point * dimension_];
-      const double weight = sign * (point_weights_.empty() ? 1.0 : double{point_weights_[point]});
-      weights_[cluster] += weight;
-      for (std::size_t i = 0; i < dimension_; ++i) sum[i] += weight * double{x[i]};
+      const double share = sign * weight(point);
+      weights_[cluster] += share;
+      for (std::size_t i = 0; i < dimension_; ++i) sum[i] += share * double{x[i]};
     }
   }
 
@@ -124,7 +128,7 @@ class Quantizer {
     std::vector<double> errors(point_count);
     parallel_for(point_count, kPointBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        errors[p] = squared_distance(row(p), mean(result_.labels[p]));
+        errors[p] = weight(p) * squared_distance(row(p), mean(result_.labels[p]));
       }
     });
     std::vector<std::uint32_t> worst(point_count);

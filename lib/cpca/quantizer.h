@@ -19,7 +19,7 @@ struct Clustering {
 };
 
 /// Classifies and averages, starting from `means`, at most `iterations` times, until no point
-/// moves. A cluster that runs empty takes the point that is worst approximated; clusters stay empty
+/// moves. A cluster that runs empty takes the point that adds most to the error; clusters stay empty
 /// only when every point is its mean. Points that are as near to one mean as to another go to the
 /// lower. Preconditions: `signal` is finite; at least one iteration.
 /// `point_weights` of the points in the means, >= 0, or empty; the mean of points that all weigh

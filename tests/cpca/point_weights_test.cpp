@@ -1,7 +1,9 @@
 // Weights of points in all encoders.
 #include <gtest/gtest.h>
 
+#include "cpca/clusterer.h"
 #include "cpca/encoder.h"
+#include "cpca/quantizer.h"
 #include "cpca/signals.h"
 
 namespace prt::cpca {
@@ -64,6 +66,23 @@ TEST_P(PointWeights, PointsThatWeighNothingDoNotMatter) {
 
 INSTANTIATE_TEST_SUITE_P(Encoders, PointWeights,
                          testing::Values(encode_static, encode_iterative, encode_adaptive));
+
+// Of clusters that begin at the same place the second is empty: it goes to the point at 1, not to
+// the one farthest away.
+TEST(WeightlessPoints, TakeNoEmptyCluster) {
+  std::vector<float> signal(10), weights(10, 1.0f);
+  signal[3] = 1.0f;
+  signal[7] = 100.0f;
+  weights[7] = 0.0f;
+  const std::vector<float> means(2);
+  const Clustering quantized = quantize(signal, 1, means, 5, weights);
+  EXPECT_EQ(quantized.means, (std::vector<float>{0.0f, 1.0f}));
+  EXPECT_EQ(quantized.labels[3], 1u);
+  Clusterer clusterer({signal.data(), signal.size(), 1, weights}, 1, means, 1);
+  EXPECT_EQ(clusterer.classify(true).moved_count, 1u);
+  EXPECT_EQ(clusterer.labels()[3], 1u);
+  EXPECT_EQ(clusterer.labels()[7], 0u);
+}
 
 }  // namespace
 }  // namespace prt::cpca
