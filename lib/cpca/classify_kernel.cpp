@@ -1,3 +1,4 @@
+#include <cmath>
 #include <vector>
 
 #include "cpca/subspace_kernels.h"
@@ -9,6 +10,8 @@ namespace {
 
 /// What is lost to rounding in errors, as a share of the squares that they come from.
 constexpr float kRounding = 1e-6f;
+/// Errors below this share of the squares are found again as squares of residuals.
+constexpr float kSmall = 1e-3f;
 
 /// Σ (a - b) c
 template <class T>
@@ -45,6 +48,13 @@ template <class T>
   }
 }
 
+template <class T>
+[[gnu::always_inline]] inline bool any_lane(const typename T::Ints& lanes) {
+  std::int32_t any = 0;
+  for (int lane = 0; lane < T::kLanes; ++lane) any |= lanes[lane];
+  return any != 0;
+}
+
 /// Errors of a panel of points in some subspaces.
 template <class T>
 struct PanelErrors {
@@ -55,6 +65,7 @@ struct PanelErrors {
   Buffer offsets, products;
   const float* panel = nullptr;
   Floats square[2], own[2];  ///< ‖y‖², and y times the mean that y is relative to
+  double flops = 0.0;        ///< of products so far
 
   [[gnu::always_inline]] PanelErrors(const Subspaces& all,
                                      std::span<const std::uint32_t> candidate_numbers)
@@ -73,9 +84,10 @@ struct PanelErrors {
     return starts;
   }
 
-  /// Finds the errors of the first candidate too.
-  [[gnu::always_inline]] void start(const float* coordinates, Floats* error) {
+  /// Finds the errors of the first candidate too. Of `points` lanes flops count.
+  [[gnu::always_inline]] void start(const float* coordinates, std::size_t points, Floats* error) {
     panel = coordinates;
+    flops_of_row = 2.0 * static_cast<double>(points * subspaces.dimension);
     const auto* y = reinterpret_cast<const Floats*>(panel);
     square[0] = square[1] = Floats{};
     for (std::size_t d = 0; d < subspaces.dimension; ++d) {
@@ -93,11 +105,61 @@ struct PanelErrors {
     subtract(candidate, error);
   }
 
+  /// Of the candidate that was found last: by how much rounding may have changed its errors. Small
+  /// ones, where it is most of what differences of squares leave, are found again.
+  [[gnu::always_inline]] void refine(std::size_t candidate, Floats* error, Floats* rounding) {
+    const float offset = offsets.get()[starts[candidate]];
+    typename T::Ints any{};
+    for (int half = 0; half < 2; ++half) {
+      rounding[half] = kRounding * (square[half] + offset);
+      any |= error[half] < kSmall * (square[half] + offset);
+    }
+    if (!any_lane<T>(any)) return;
+    Floats residual[2];
+    find_residual(candidate, residual);
+    for (int half = 0; half < 2; ++half) {
+      const Floats from = square[half] + offset;
+      const auto is_small = error[half] < kSmall * from;
+      Floats root{};  // a residual r ± δ has the square r² ± 2 r δ
+      for (int lane = 0; lane < T::kLanes; ++lane)
+        root[lane] = std::sqrt(residual[half][lane] * from[lane]);
+      error[half] = is_small ? residual[half] : error[half];
+      rounding[half] = is_small ? kRounding * root : rounding[half];
+    }
+  }
+
  private:
+  double flops_of_row = 0.0;
+
   [[gnu::always_inline]] void multiply_by(std::size_t candidate) {
     const std::uint32_t k = candidates[candidate];
     multiply<T>(panel, T::kPanel, subspaces.mean(k), subspaces.stride, 1 + subspaces.used[k],
                 subspaces.dimension, products.get());
+    flops += flops_of_row * (1 + subspaces.used[k]);
+  }
+
+  /// ‖y - d - Σ_i (y·b_i - d·b_i) b_i‖² with the products that are there.
+  [[gnu::always_inline]] void find_residual(std::size_t candidate, Floats* error) {
+    const std::uint32_t k = candidates[candidate], count = subspaces.used[k];
+    const float *mean = subspaces.mean(k), *origin = subspaces.mean(candidates[0]);
+    const float* offset = offsets.get() + starts[candidate];
+    const auto* y = reinterpret_cast<const Floats*>(panel);
+    auto* share = reinterpret_cast<Floats*>(products.get());
+    for (std::size_t i = 1; i <= count; ++i) {
+      for (std::size_t half = 0; half < 2; ++half) share[2 * i + half] -= offset[i];
+    }
+    error[0] = error[1] = Floats{};
+    for (std::size_t d = 0; d < subspaces.dimension; ++d) {
+      const float* vector = mean + d;
+      Floats rest[2] = {y[2 * d] - (mean[d] - origin[d]), y[2 * d + 1] - (mean[d] - origin[d])};
+      for (std::size_t i = 1; i <= count; ++i) {
+        vector += subspaces.stride;
+        rest[0] -= share[2 * i] * *vector;
+        rest[1] -= share[2 * i + 1] * *vector;
+      }
+      for (int half = 0; half < 2; ++half) error[half] += rest[half] * rest[half];
+    }
+    flops += flops_of_row * (1 + count);
   }
 
   [[gnu::always_inline]] void subtract(std::size_t candidate, Floats* error) {
@@ -123,9 +185,9 @@ struct Best {
   typename T::Ints candidate[2];
 
   [[gnu::always_inline]] void compare(const Floats* errors, float penalty, const Floats* scales,
-                                      std::size_t number) {
+                                      const Floats* rounding, std::size_t number) {
     for (int half = 0; half < 2; ++half) {
-      const auto other = errors[half] + penalty * scales[half];
+      const auto other = errors[half] + penalty * scales[half] + rounding[half];
       const auto better = other < cost[half];
       cost[half] = better ? other : cost[half];
       error[half] = better ? errors[half] : error[half];
@@ -140,9 +202,7 @@ struct Best {
     typename T::Ints any{};
     for (int half = 0; half < 2; ++half)
       any |= bounds[half] + penalty * scales[half] - rounding[half] < cost[half];
-    std::int32_t lanes = 0;
-    for (int lane = 0; lane < T::kLanes; ++lane) lanes |= any[lane];
-    return lanes != 0;
+    return any_lane<T>(any);
   }
 };
 
@@ -172,44 +232,46 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline void find_best(const Classification& work, PanelErrors<T>& all,
                                              PanelErrors<T>* leading, const float* panel,
-                                             const float* point_scales, float* errors,
-                                             Best<T>& best) {
+                                             const float* point_scales, std::size_t count,
+                                             float* errors, Best<T>& best) {
   using Floats = typename T::Floats;
   auto* error = reinterpret_cast<Floats*>(errors);
   const auto* scales = reinterpret_cast<const Floats*>(point_scales);
-  all.start(panel, error);
   Floats beyond[2] = {}, rounding[2] = {};
+  all.start(panel, count, error);
+  all.refine(0, error, rounding);
   for (int half = 0; half < 2; ++half) {
-    rounding[half] = kRounding * all.square[half];
     best.error[half] = error[half];
     best.cost[half] = error[half] + work.penalties[0] * scales[half] - rounding[half];
     best.candidate[half] = typename T::Ints{};
   }
   if (leading != nullptr) {
     Floats bound[2];
-    leading->start(panel, bound);
+    leading->start(panel, count, bound);
     for (int half = 0; half < 2; ++half) beyond[half] = error[half] - bound[half];
   }
   for (std::size_t c = 1; c < work.candidates.size(); ++c) {
     error += 2;
     if (leading != nullptr) {
       leading->find(c, error);
-      const float offset = kRounding * leading->offsets.get()[leading->starts[c]];
-      const Floats margin[2] = {rounding[0] + offset, rounding[1] + offset};
+      const float offset = leading->offsets.get()[leading->starts[c]];
+      const Floats margin[2] = {kRounding * (all.square[0] + offset),
+                                kRounding * (all.square[1] + offset)};
       if (!best.may_lose_to(error, work.penalties[c], scales, margin)) {
         for (int half = 0; half < 2; ++half) error[half] += beyond[half];
         continue;
       }
     }
     all.find(c, error);
-    best.compare(error, work.penalties[c], scales, c);
+    all.refine(c, error, rounding);
+    best.compare(error, work.penalties[c], scales, rounding, c);
   }
 }
 
 template <class T, class Source>
-[[gnu::always_inline]] inline double classify_all(const Source& source, const Rows& rows,
-                                                  const Subspaces& subspaces,
-                                                  const Classification& work) {
+[[gnu::always_inline]] inline Classified classify_all(const Source& source, const Rows& rows,
+                                                      const Subspaces& subspaces,
+                                                      const Classification& work) {
   const std::size_t n = subspaces.dimension;
   Buffer panel(padded(n) * T::kPanel), scales(T::kPanel),
       errors(work.candidates.size() * T::kPanel);
@@ -227,7 +289,7 @@ template <class T, class Source>
     }
     Best<T> best;
     find_best<T>(work, all, work.leading != nullptr ? &leading : nullptr, panel.get(), scales.get(),
-                 errors.get(), best);
+                 points.size(), errors.get(), best);
     const auto* candidate = reinterpret_cast<const std::int32_t*>(best.candidate);
     const auto* error = reinterpret_cast<const float*>(best.error);
     for (std::size_t p = 0; p < points.size(); ++p) {
@@ -238,13 +300,13 @@ template <class T, class Source>
     if (!work.affinities.empty())
       add_affinities<T>(errors.get(), best, points.size(), work.affinities);
   }
-  return error_before;
+  return {error_before, all.flops + leading.flops};
 }
 
 }  // namespace
 
-double classify(const Rows& rows, const Subspaces& subspaces, const Classification& work,
-                SimdLevel level) {
+Classified classify(const Rows& rows, const Subspaces& subspaces, const Classification& work,
+                    SimdLevel level) {
   return run_for(
       level, [&](auto tile) __attribute__((always_inline)) {
         using T = decltype(tile);

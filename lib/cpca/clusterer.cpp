@@ -113,15 +113,16 @@ Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
     block_affinities_.assign(blocks.size() * neighbour_count_, 0.0f);
   }
   if (subspaces_.dimension >= 2 * kLeading) leading_ = find_leading(subspaces_, kLeading);
-  std::vector<double> errors_before(blocks.size());
+  std::vector<Classified> classified(blocks.size());
   parallel_for(blocks.size(), 1, [&](std::size_t b, std::size_t) {
-    errors_before[b] = classify_block(blocks[b], full, vector_cost, b);
+    classified[b] = classify_block(blocks[b], full, vector_cost, b);
   });
   leading_.reset();
   if (full) merge_neighbours(blocks);
   Pass pass;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    pass.error_before += errors_before[b];
+    pass.error_before += classified[b].error_before;
+    flops_ += classified[b].flops;
     for (const std::uint32_t p : blocks[b].points)
       pass.moved_count += labels_[p] != blocks[b].cluster;
   }
@@ -130,17 +131,11 @@ Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
   for (std::size_t p = 0; p < labels_.size(); ++p) {
     pass.error += double{rows_.weight(p)} * double{errors_[p]};
   }
-  std::size_t vectors = 0;
-  for (const std::uint32_t used : subspaces_.used) vectors += 1 + used;
-  flops_ += 2.0 * static_cast<double>(labels_.size() * subspaces_.dimension * vectors) *
-            (full ? 1.0
-                  : static_cast<double>(neighbour_count_) /
-                        static_cast<double>(subspaces_.cluster_count()));
   return pass;
 }
 
-double Clusterer::classify_block(const Block& block, bool full, float vector_cost,
-                                 std::size_t number) {
+Classified Clusterer::classify_block(const Block& block, bool full, float vector_cost,
+                                     std::size_t number) {
   const auto near =
       std::span(neighbours_).subspan(block.cluster * neighbour_count_, neighbour_count_);
   std::vector<std::uint32_t> candidates =
@@ -150,15 +145,15 @@ double Clusterer::classify_block(const Block& block, bool full, float vector_cos
   for (const std::uint32_t k : candidates) {
     penalties.push_back(vector_cost * static_cast<float>(subspaces_.used[k]));
   }
-  const double error_before = cpca::classify(rows_, subspaces_,
-                                             {.points = block.points,
-                                              .candidates = candidates,
-                                              .penalties = penalties,
-                                              .labels = labels_,
-                                              .errors = errors_,
-                                              .affinities = affinities,
-                                              .leading = leading_ ? &*leading_ : nullptr});
-  if (!full) return error_before;
+  const Classified classified = cpca::classify(rows_, subspaces_,
+                                               {.points = block.points,
+                                                .candidates = candidates,
+                                                .penalties = penalties,
+                                                .labels = labels_,
+                                                .errors = errors_,
+                                                .affinities = affinities,
+                                                .leading = leading_ ? &*leading_ : nullptr});
+  if (!full) return classified;
   std::vector<std::uint32_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(neighbour_count_);
@@ -169,7 +164,7 @@ double Clusterer::classify_block(const Block& block, bool full, float vector_cos
     block_neighbours_[number * neighbour_count_ + i] = candidates[order[i]];
     block_affinities_[number * neighbour_count_ + i] = affinities[order[i]];
   }
-  return error_before;
+  return classified;
 }
 
 void Clusterer::merge_neighbours(std::span<const Block> blocks) {

@@ -14,6 +14,7 @@
 
 #include "core/archive.h"
 #include "cpca/clusters.h"
+#include "cpca/subspace_kernels.h"
 #include "cpca/subspaces.h"
 
 namespace prt::cpca {
@@ -59,6 +60,7 @@ class Clusterer {
   const std::vector<std::uint32_t>& labels() const { return labels_; }
   /// ‖x_p - x̃_p‖² of each point, in the coordinates of the rows, after classify().
   const std::vector<float>& errors() const { return errors_; }
+  /// Of products of points with means, vectors and one another that were computed.
   double flops() const { return flops_; }
 
  private:
@@ -67,7 +69,7 @@ class Clusterer {
     std::span<const std::uint32_t> points;
   };
   std::vector<Block> make_blocks() const;
-  double classify_block(const Block& block, bool full, float vector_cost, std::size_t number);
+  Classified classify_block(const Block& block, bool full, float vector_cost, std::size_t number);
   void merge_neighbours(std::span<const Block> blocks);
   /// Returns how many there were.
   std::size_t fill_empty_clusters();

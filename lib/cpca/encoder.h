@@ -41,7 +41,9 @@ struct Stage {
 /// What iterative encoders did with one number of vectors.
 struct Level {
   int component_count = 0;
-  std::vector<double> errors;  ///< SE after each iteration
+  /// SE after each iteration; of the last level of encode_adaptive, which is its adaptation, before
+  /// each alternation, and larger where the budget is tight.
+  std::vector<double> errors;
   /// Whether the last of them are of all coordinates: in axes, subspaces are not quite the best.
   bool is_whole = true;
 };
@@ -51,7 +53,7 @@ struct Encoded {
   int iterations = 0;          ///< done
   int resumed_iterations = 0;  ///< of these, by an interrupted run
   std::vector<Level> levels;   ///< of iterative encoders
-  double flops = 0.0;          ///< of the products of points with means, vectors and one another
+  double flops = 0.0;  ///< of products of points with means, vectors and one another, as computed
   std::vector<Stage> stages;
 };
 

@@ -14,8 +14,9 @@ namespace {
 
 /// Clusters beyond it are worth several threads.
 constexpr std::size_t kBlock = 4096;
-/// Variances below this share of the largest are rounding of single precision.
-constexpr double kRankTolerance = 1e-7;
+/// Variances below this share of the largest are rounding: products of points and vectors in single
+/// precision make those of the points λ uncertain by 1e-7 √(λ λ_1).
+constexpr double kRankTolerance = 1e-10;
 
 class Update {
  public:

@@ -74,14 +74,14 @@ TEST(SubspaceKernels, PointsGoToTheClusterOfLeastError) {
       std::iota(points.begin(), points.end(), 0u);
       std::iota(candidates.begin(), candidates.end(), 0u);
       std::vector<float> errors(point_count), affinities(cluster_count), penalties(cluster_count);
-      const double error_before = classify({values.data(), point_count, n}, subspaces,
-                                           {.points = points,
-                                            .candidates = candidates,
-                                            .penalties = penalties,
-                                            .labels = labels,
-                                            .errors = errors,
-                                            .affinities = affinities},
-                                           level);
+      const auto [error_before, flops] = classify({values.data(), point_count, n}, subspaces,
+                                                  {.points = points,
+                                                   .candidates = candidates,
+                                                   .penalties = penalties,
+                                                   .labels = labels,
+                                                   .errors = errors,
+                                                   .affinities = affinities},
+                                                  level);
       std::vector<double> expected(cluster_count);
       double expected_before = 0.0;
       for (std::size_t p = 0; p < point_count; ++p) {
