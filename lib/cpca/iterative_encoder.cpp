@@ -12,8 +12,11 @@ namespace prt::cpca {
 
 namespace {
 
-/// Power steps after a classification, and for clusters whose vectors start from nothing.
-constexpr int kSteps = 1, kFirstSteps = 8;
+/// Power steps after a classification in axes, in the signal's coordinates, of which there are few
+/// then, and for clusters whose vectors start from nothing.
+constexpr int kSteps = 1, kStepsWithoutAxes = 2, kFirstSteps = 8;
+/// Full passes that a level begins with, without axes; in axes it is one.
+constexpr int kFullWithoutAxes = 2;
 /// Of the last iterations, those in all coordinates where the others knew the first axes only: at
 /// most half.
 constexpr int kLastIterations = 4;
@@ -31,9 +34,11 @@ std::vector<float> first_means(std::span<const float> signal, std::size_t dimens
 IterativeEncoder::IterativeEncoder(std::span<const float> signal, std::size_t dimension,
                                    const Options& options, std::size_t capacity)
     : options_(options),
-      space_(signal, dimension, options.point_weights),
+      // Without vectors clusters are compared as vector quantisation does it.
+      space_(signal, dimension, options.point_weights, options.component_count > 0),
       clusterer_(space_.rows(), space_.dimension(),
                  space_.convert(first_means(signal, dimension, options)), capacity),
+      steps_(space_.has_axes() ? kSteps : kStepsWithoutAxes),
       progress_(
           "encoding",
           static_cast<std::size_t>(options.iterations) *
@@ -55,7 +60,7 @@ std::vector<Level> IterativeEncoder::run() {
       run_level();
       store();
     }
-    if (last > 0) start_level(last, levels_.back().errors.back());
+    if (last > 0) update_for(last, levels_.back().errors.back());
   }
   finish_level(last);
   store();
@@ -87,23 +92,23 @@ void IterativeEncoder::store() {
 
 const Level& IterativeEncoder::run_level() {
   const auto count = static_cast<int>(levels_.size());
-  if (count > 0) start_level(count, levels_.back().errors.back());
-  levels_.push_back({.component_count = count, .errors = {}, .is_whole = !space_.has_axes()});
+  if (count > 0) update_for(count, levels_.back().errors.back());
+  levels_.push_back({.component_count = count, .errors = {}});
   iterate(levels_.back(), options_.iterations, false);
   return levels_.back();
 }
 
 void IterativeEncoder::finish_level(int count) {
   const int last = space_.has_axes() ? std::min(kLastIterations, options_.iterations / 2) : 0;
-  levels_.push_back(
-      {.component_count = count, .errors = {}, .is_whole = last > 0 || !space_.has_axes()});
+  levels_.push_back({.component_count = count, .errors = {}});
   iterate(levels_.back(), options_.iterations - last, true);
   if (last == 0) return;
+  levels_.back().is_whole = true;
   space_.use_signal();
   move_to_space(count);
   for (int i = 0; i < last; ++i) {
     levels_.back().errors.push_back(clusterer_.classify(false).error);
-    update(count, kSteps);
+    update(count, steps_);
   }
 }
 
@@ -123,13 +128,13 @@ void IterativeEncoder::update(int count, int steps) {
   clusterer_.update(used, static_cast<std::uint32_t>(count) + 1, steps);
 }
 
-void IterativeEncoder::start_level(int count, double error) {
+void IterativeEncoder::update_for(int count, double error) {
   if (space_.fit_to(error) || is_away_) {
     move_to_space(count);
     is_away_ = false;
   } else {
     clusterer_.set_dimension(space_.dimension());
-    update(count, kSteps);
+    update(count, steps_);
   }
 }
 
@@ -143,11 +148,17 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
   const int count = level.component_count, last = iterations - 1;
   bool settled = false;  // nothing moved in the last pass
   for (int i = 0; i <= last; ++i) {
-    // The first pass of all knows no neighbours, not even those of its own result.
-    const bool full = settled || i == 0 || (count == 0 && i == 1) || (is_final && i == last);
+    // Without vectors a full pass costs little, and what it finds is what all levels begin with.
+    const int full_count = space_.has_axes() ? 1 : kFullWithoutAxes;
+    const bool full = settled || i < full_count || count == 0 || (is_final && i == last);
     const Clusterer::Pass pass = clusterer_.classify(full);
     level.errors.push_back(pass.error + space_.tail());
-    update(count, kSteps);
+    level.is_whole = !space_.has_axes();
+    if (count == 0) {
+      update_for(count, level.errors.back());
+    } else {
+      update(count, steps_);
+    }
     progress_.advance(1);
     settled = pass.moved_count == 0;
     if (settled && full) break;

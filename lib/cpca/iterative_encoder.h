@@ -38,7 +38,8 @@ class IterativeEncoder {
   void restore();
   void store();
   void update(int count, int steps);
-  void start_level(int count, double error);
+  /// Fits clusters in as many coordinates as an error calls for.
+  void update_for(int count, double error);
   /// The level that ends an encoding, of which some iterations are in all coordinates.
   void finish_level(int count);
   void iterate(Level& level, int iterations, bool is_final);
@@ -48,6 +49,7 @@ class IterativeEncoder {
   const Options& options_;
   WorkingSpace space_;
   Clusterer clusterer_;
+  int steps_;  ///< of updates after a classification
   std::vector<Level> levels_;
   int resumed_iterations_ = 0;
   bool is_away_ = false;  ///< the clusterer is in all coordinates, which are not those of space_

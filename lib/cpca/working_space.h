@@ -13,8 +13,9 @@ namespace prt::cpca {
 
 class WorkingSpace {
  public:
-  WorkingSpace(std::span<const float> signal, std::size_t dimension,
-               std::span<const float> weights);
+  /// Without `axes` the signal itself.
+  WorkingSpace(std::span<const float> signal, std::size_t dimension, std::span<const float> weights,
+               bool axes = true);
 
   const Rows& rows() const { return rows_; }
   std::size_t dimension() const { return dimension_; }

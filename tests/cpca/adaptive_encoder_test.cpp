@@ -89,11 +89,11 @@ TEST(AdaptiveEncoder, KeepsToTheMaximum) {
 }
 
 TEST(AdaptiveEncoder, SameBytesForAnyThreadCount) {
-  const auto signal = make_signal(4000, 100, 5);
+  const auto signal = make_signal(4000, 128, 5);
   const auto encode = [&](int threads) {
     set_thread_count(threads);
     const Options options{.cluster_count = 50, .component_count = 3, .iterations = 3};
-    return encode_adaptive(signal, 100, options).encoding;
+    return encode_adaptive(signal, 128, options).encoding;
   };
   const Encoding one = encode(1), two = encode(2);
   set_thread_count(0);

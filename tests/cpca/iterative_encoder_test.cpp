@@ -24,18 +24,19 @@ struct Case {
   Options options;
 };
 
-// Fewer coefficients than are worth axes of their own; too many dimensions for half as many axes;
-// few enough.
+// Fewer coefficients than are worth axes of their own, twice; few enough dimensions for half as
+// many axes.
 const Case kCases[] = {
     {2000, 25, 6, {.cluster_count = 6, .component_count = 4, .iterations = 15}},
     {1000, 80, 12, {.cluster_count = 12, .component_count = 3, .iterations = 15}},
     {1200, 128, 4, {.cluster_count = 6, .component_count = 6, .iterations = 15}},
 };
 
-// So many that between full passes only near ones are tried; the same three kinds.
+// So many that between full passes only near ones are tried. The second has too many dimensions for
+// half as many axes.
 const Case kManyClusters[] = {
     {3000, 25, 12, {.cluster_count = 60, .component_count = 4, .iterations = 15}},
-    {2000, 80, 20, {.cluster_count = 50, .component_count = 3, .iterations = 15}},
+    {2000, 140, 20, {.cluster_count = 50, .component_count = 3, .iterations = 15}},
     {2000, 128, 4, {.cluster_count = 40, .component_count = 3, .iterations = 15}},
 };
 
@@ -62,6 +63,31 @@ TEST(IterativeEncoder, ErrorNeverRises) {
   }
 }
 
+// Without noise, so that errors end near 10⁻⁸ of the squares that they are differences of.
+TEST(IterativeEncoder, SmallErrorsNeverRiseAndAreTrue) {
+  const Case cases[] = {
+      {3600, 30, 0, {.cluster_count = 20, .component_count = 18, .iterations = 10}},
+      {2500, 128, 0, {.cluster_count = 16, .component_count = 20, .iterations = 10}},
+  };
+  for (const Case& test : cases) {
+    const auto side = static_cast<std::size_t>(std::sqrt(test.point_count));
+    const auto signal = make_smooth_signal(side, test.dimension, 24.0f);
+    const Encoded encoded =
+        encode_iterative(signal, static_cast<int>(test.dimension), test.options);
+    const auto whole = summarize(point_errors(encoded.encoding, signal), signal);
+    EXPECT_LT(whole.relative_rmse(), 2e-4);
+    for (const Level& level : encoded.levels) {
+      double last = std::numeric_limits<double>::infinity();
+      for (double error : level.errors) {
+        EXPECT_LE(error, last * (1.0 + kRounding)) << level.component_count << " vectors";
+        last = error;
+      }
+    }
+    EXPECT_NEAR(encoded.levels.back().errors.back(), whole.squared_error,
+                0.01 * whole.squared_error);
+  }
+}
+
 TEST(IterativeEncoder, IsAsGoodAsThePlainMethod) {
   for (const Case& test : kCases) {
     const auto signal = make_signal(test.point_count, test.dimension, test.group_count);
@@ -72,6 +98,31 @@ TEST(IterativeEncoder, IsAsGoodAsThePlainMethod) {
     const double expected = plain.run(test.options.component_count, test.options.iterations);
     EXPECT_NEAR(error_of(encoded, signal), expected, 0.005 * expected);
   }
+}
+
+// More clusters than are tried between full passes. Which local minimum either finds is chance, so
+// that it takes the mean over signals and seeds to compare.
+TEST(IterativeEncoder, IsNoWorseThanThePlainMethodWithManyClusters) {
+  const std::pair<std::size_t, std::vector<float>> signals[] = {
+      {16, make_signal(1200, 16, 24)},
+      {24, make_smooth_signal(35, 24, 20.0f)},
+      {40, make_uneven_signal(1200, 40, 6)},
+  };
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& [n, signal] : signals) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const Options options{
+          .cluster_count = 64, .component_count = 2, .iterations = 12, .seed = seed};
+      const double expected = PlainIterative(signal, n, 64, seed).run(2, 12);
+      const double ratio =
+          error_of(encode_iterative(signal, static_cast<int>(n), options), signal) / expected;
+      EXPECT_NEAR(ratio, 1.0, 0.03) << n << " coefficients, seed " << seed;
+      sum += ratio;
+      ++count;
+    }
+  }
+  EXPECT_NEAR(sum / count, 1.0, 0.005);
 }
 
 TEST(IterativeEncoder, MeasuresLevelsInAllCoordinates) {
@@ -112,11 +163,11 @@ TEST(IterativeEncoder, IsBetterThanStatic) {
 }
 
 TEST(IterativeEncoder, SameBytesForAnyThreadCountAndTwice) {
-  const auto signal = make_signal(6000, 100, 5);
+  const auto signal = make_signal(6000, 128, 5);
   for (int clusters : {1, 50}) {
     const auto encode = [&](int threads) {
       set_thread_count(threads);
-      return encode_iterative(signal, 100,
+      return encode_iterative(signal, 128,
                               {.cluster_count = clusters, .component_count = 3, .iterations = 4});
     };
     const Encoded one = encode(1);

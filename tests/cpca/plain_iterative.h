@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/parallel.h"
 #include "cpca/seeding.h"
 #include "linalg/decompose.h"
 
@@ -45,32 +46,29 @@ class PlainIterative {
 
  private:
   double error_in(std::size_t p, std::size_t k) const {
-    std::vector<double> y(n_);
+    const double *x = &signal_[p * n_], *mean = &means_[k * n_];
     double error = 0.0;
-    for (std::size_t i = 0; i < n_; ++i) y[i] = signal_[p * n_ + i] - means_[k * n_ + i];
-    for (double value : y) error += value * value;
+    for (std::size_t i = 0; i < n_; ++i) error += (x[i] - mean[i]) * (x[i] - mean[i]);
     for (std::size_t v = 0; v < vectors_[k].size() / n_; ++v) {
       double share = 0.0;
-      for (std::size_t i = 0; i < n_; ++i) share += y[i] * vectors_[k][v * n_ + i];
+      for (std::size_t i = 0; i < n_; ++i) share += (x[i] - mean[i]) * vectors_[k][v * n_ + i];
       error -= share * share;
     }
     return error;
   }
 
   bool classify() {
-    bool moved = false;
-    for (std::size_t p = 0; p < labels_.size(); ++p) {
-      std::uint32_t best = labels_[p];
-      double least = error_in(p, best);
-      for (std::uint32_t k = 0; k < vectors_.size(); ++k) {
-        const double error = error_in(p, k);
-        if (error < least) least = error, best = k;
+    const std::vector<std::uint32_t> before = labels_;
+    parallel_for(labels_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        errors_[p] = error_in(p, labels_[p]);
+        for (std::uint32_t k = 0; k < vectors_.size(); ++k) {
+          const double error = error_in(p, k);
+          if (error < errors_[p]) errors_[p] = error, labels_[p] = k;
+        }
       }
-      moved = moved || best != labels_[p];
-      labels_[p] = best;
-      errors_[p] = least;
-    }
-    return moved;
+    });
+    return labels_ != before;
   }
 
   void fill_empty() {
@@ -84,12 +82,12 @@ class PlainIterative {
   }
 
   void fit(std::size_t count) {
-    for (std::size_t k = 0; k < vectors_.size(); ++k) {
+    parallel_for(vectors_.size(), 1, [&](std::size_t k, std::size_t) {
       std::vector<std::size_t> points;
       for (std::size_t p = 0; p < labels_.size(); ++p) {
         if (labels_[p] == k) points.push_back(p);
       }
-      if (points.empty()) continue;
+      if (points.empty()) return;
       double* mean = &means_[k * n_];
       std::fill_n(mean, n_, 0.0);
       for (std::size_t p : points) {
@@ -109,7 +107,7 @@ class PlainIterative {
       vectors_[k] = linalg::largest_eigenpairs(linalg::MatrixD{covariance.data(), n_, n_},
                                                std::min({count, points.size() - 1, n_}))
                         .vectors;
-    }
+    });
   }
 
   std::vector<double> signal_;

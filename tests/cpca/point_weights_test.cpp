@@ -10,7 +10,7 @@ namespace prt::cpca {
 namespace {
 
 constexpr std::size_t kWeightedCount = 1500;
-constexpr int kWeightedDimension = 80;
+constexpr int kWeightedDimension = 128;
 
 double weighted_error(const Encoded& encoded, const std::vector<float>& signal,
                       const std::vector<float>& weights) {

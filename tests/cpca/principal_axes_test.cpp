@@ -49,17 +49,28 @@ TEST(PrincipalAxes, ConvertOtherPointsLikeTheSignals) {
 }
 
 TEST(WorkingSpace, TakesTheSignalItselfWhereAxesWouldLoseIt) {
-  const auto noise = random_values(1000 * 100, 1);
-  WorkingSpace space(noise, 100, {});
+  const auto noise = random_values(1000 * 128, 1);
+  WorkingSpace space(noise, 128, {});
   space.fit_to(1000.0);
   EXPECT_EQ(space.rows().values, noise.data());
-  EXPECT_EQ(space.dimension(), 100u);
+  EXPECT_EQ(space.dimension(), 128u);
   EXPECT_EQ(space.tail(), 0.0);
-  const auto signal = make_signal(1000, 100, 2);
-  WorkingSpace flat(signal, 100, {});
+  const auto signal = make_signal(1000, 128, 2);
+  WorkingSpace flat(signal, 128, {});
   EXPECT_FALSE(flat.fit_to(1000.0));
-  EXPECT_LT(flat.dimension(), 47u);
+  EXPECT_LT(flat.dimension(), 64u);
   EXPECT_LE(flat.tail(), 50.0);
+  EXPECT_FALSE(WorkingSpace(signal, 128, {}, false).has_axes());
+}
+
+TEST(WorkingSpace, TakesTheSignalItselfForErrorsOfRounding) {
+  const auto signal = make_smooth_signal(30, 128, 3.0f);
+  WorkingSpace space(signal, 128, {});
+  const double variance = find_principal_axes(signal, 128, 16, {}).tails[0];
+  EXPECT_FALSE(space.fit_to(1e-4 * variance));
+  EXPECT_TRUE(space.has_axes());
+  EXPECT_TRUE(space.fit_to(5e-6 * variance));
+  EXPECT_FALSE(space.has_axes());
 }
 
 }  // namespace

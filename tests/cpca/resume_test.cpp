@@ -51,9 +51,9 @@ class EncoderResume : public testing::TestWithParam<Method> {
   const bool is_adaptive_ = GetParam() == Method::adaptive;
 };
 
-// With 80 coefficients the encoder works in principal axes, and at last in all coordinates.
+// With 128 coefficients the encoder works in principal axes, and at last in all coordinates.
 TEST_P(EncoderResume, ContinuesToTheSameEncoding) {
-  for (const int dimension : {12, 80}) {
+  for (const int dimension : {12, 128}) {
     const auto signal = make_uneven_signal(1200, static_cast<std::size_t>(dimension), 3);
     Options options{.cluster_count = 10, .component_count = 3, .iterations = 12};
     const Encoded expected = encode(GetParam(), signal, dimension, options);

@@ -122,7 +122,7 @@ TEST(ResizeClusters, SplitsTheWorstAndDissolvesTheBest) {
 }
 
 TEST(Start, FromOtherClustersIsAsGoodAsFromSeeds) {
-  constexpr int kDimension = 80;
+  constexpr int kDimension = 128;
   const auto signal = make_signal(3000, kDimension, 8);
   for (const Method method : {Method::fixed, Method::iterative, Method::adaptive}) {
     Options options{.cluster_count = 40, .component_count = 3};

@@ -43,7 +43,24 @@ inline std::vector<float> make_signal(std::size_t point_count, std::size_t dimen
   return signal;
 }
 
-/// Four such signals of falling strength after each other: some clusters need more vectors.
+/// Waves over a square, points row by row of a grid: no noise, so that the error of clusters falls
+/// with their vectors to the end of single precision.
+inline std::vector<float> make_smooth_signal(std::size_t side, std::size_t dimension,
+                                             float frequency, std::uint64_t seed = 5) {
+  const auto waves = random_values(3 * dimension, seed);
+  std::vector<float> signal;
+  for (std::size_t p = 0; p < side * side; ++p) {
+    const float u = static_cast<float>(p % side) / static_cast<float>(side);
+    const float v = static_cast<float>(p / side) / static_cast<float>(side);
+    for (std::size_t i = 0; i < dimension; ++i) {
+      const float* wave = &waves[3 * i];
+      signal.push_back(std::sin(frequency * (wave[0] * u + wave[1] * v) + 6.0f * wave[2]));
+    }
+  }
+  return signal;
+}
+
+/// Four signals of groups of falling strength after each other: some clusters need more vectors.
 inline std::vector<float> make_uneven_signal(std::size_t point_count, std::size_t dimension,
                                              std::size_t group_count) {
   std::vector<float> signal;
