@@ -114,7 +114,7 @@ void IterativeEncoder::finish_level(int count) {
 
 double IterativeEncoder::measure() {
   const Level& level = levels_.back();
-  if (!space_.has_axes()) return level.errors.back();
+  if (level.is_whole) return level.errors.back();
   const Rows rows = space_.signal_rows();
   move_to(rows, rows.stride, level.component_count);
   is_away_ = true;

@@ -19,11 +19,11 @@ struct Clustering {
 };
 
 /// Classifies and averages, starting from `means`, at most `iterations` times, until no point
-/// moves. A cluster that runs empty takes the point that adds most to the error; clusters stay empty
-/// only when every point is its mean. Points that are as near to one mean as to another go to the
-/// lower. Preconditions: `signal` is finite; at least one iteration.
-/// `point_weights` of the points in the means, >= 0, or empty; the mean of points that all weigh
-/// nothing stays. The state of that name in the checkpoint, if any, follows the iterations.
+/// moves. A cluster that runs empty takes the point that adds most to the error; clusters stay
+/// empty only when there is no error left. Points that are as near to one mean as to another go to
+/// the lower. Preconditions: `signal` is finite; at least one iteration. `point_weights` of the
+/// points in the means, >= 0, or empty; the mean of points that all weigh nothing stays. The state
+/// of that name in the checkpoint, if any, follows the iterations.
 Clustering quantize(std::span<const float> signal, std::size_t dimension, std::vector<float> means,
                     int iterations, std::span<const float> point_weights = {},
                     Checkpoint* checkpoint = nullptr, Checkpoint::Name name = {});
