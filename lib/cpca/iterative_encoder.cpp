@@ -15,7 +15,7 @@ namespace {
 /// Power steps after a classification in axes, in the signal's coordinates, of which there are few
 /// then, and for clusters whose vectors start from nothing.
 constexpr int kSteps = 1, kStepsWithoutAxes = 2, kFirstSteps = 8;
-/// Full passes that a level begins with, without axes; in axes it is one.
+/// Full passes that a level with vectors begins with, without axes; in axes it is one.
 constexpr int kFullWithoutAxes = 2;
 /// Of the last iterations, those in all coordinates where the others knew the first axes only: at
 /// most half.
@@ -148,9 +148,12 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
   const int count = level.component_count, last = iterations - 1;
   bool settled = false;  // nothing moved in the last pass
   for (int i = 0; i <= last; ++i) {
-    // Without vectors a full pass costs little, and what it finds is what all levels begin with.
-    const int full_count = space_.has_axes() ? 1 : kFullWithoutAxes;
-    const bool full = settled || i < full_count || count == 0 || (is_final && i == last);
+    // The first pass of all knows no neighbours, not even those of its own result. Of few
+    // coefficients and no vectors full passes cost little, and all levels begin with what they
+    // find.
+    const int full_count = count == 0 ? (space_.has_axes() ? 2 : iterations)
+                                      : (space_.has_axes() ? 1 : kFullWithoutAxes);
+    const bool full = settled || i < full_count || (is_final && i == last);
     const Clusterer::Pass pass = clusterer_.classify(full);
     level.errors.push_back(pass.error + space_.tail());
     level.is_whole = !space_.has_axes();
