@@ -7,7 +7,7 @@ import struct
 import unittest
 import zlib
 
-from toolbox import WORLD, ToolTest, glb
+from toolbox import BUNNY, WORLD, ToolTest, glb
 
 PICTURE = ("--size", "96x96", "--background", "none", "--antialias", 1)  # pixel centres
 
@@ -93,11 +93,11 @@ class GlossyQuality(ToolTest):
         self.done("prt-render", model, "--light", self.light, "-o", path, *PICTURE, *options)
         return path
 
-    def bake(self, rows, *options):
+    def bake(self, rows, *options, rays=512, bounces=1):
         """The picture of an uncompressed bake, and its transfer file."""
         transfer = self.folder / f"{rows}.transfer.exr"
         self.done("prt-transfer", self.mesh, "-o", transfer, "--mode", "matrix", "--rows", rows,
-                  "--brdf", self.brdf, "--bounces", 1, "--rays", 512, *options,
+                  "--brdf", self.brdf, "--bounces", bounces, "--rays", rays, *options,
                   env=self.environment)
         return self.draw(f"{rows}.exr", self.mesh, "--transfer", transfer), transfer
 
@@ -128,6 +128,26 @@ class GlossyQuality(ToolTest):
         self.assertLess(optimal[24], zero)
         self.assertLess(optimal[16], 1.1 * zero)
         self.assertLess(compression, 0.01)
+
+    def test_ward(self):
+        self.prepare("ward:0.1,0.4")
+        error = self.error(self.bake(25)[0])
+        print(f"ward {error}, noise {self.noise}")
+        self.assertLess(error, 0.035)
+
+    def test_compressed_bunny(self):
+        """256 clusters of 8 vectors, with few rays."""
+        self.environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
+        self.mesh, self.light, self.brdf = self.folder / "a.glb", self.folder / "a.json", "phong:10"
+        self.done("prt-import", BUNNY, "-o", self.mesh, "--base-color", "0.7,0.7,0.7")
+        self.done("prt-light", WORLD / "sunset.exr", "-o", self.light, "--bands", 5)
+        uncompressed, transfer = self.bake(25, rays=64, bounces=0)
+        baked = self.folder / "a.prt.glb"
+        self.done("prt-compress", self.mesh, transfer, "-o", baked, "--clusters", 256,
+                  "--components", 8)
+        compression = self.difference(self.draw("c.exr", baked), uncompressed, 2500)
+        print(f"bunny compressed {compression}")
+        self.assertLess(compression, 0.03)
 
     def test_reference_reads_roughness_textures(self):
         light = self.folder / "a.json"
