@@ -17,7 +17,7 @@ namespace prt::runtime {
 /// for each colour. Diffuse transfer always takes one.
 enum class Passes { automatic, one, per_channel };
 
-/// How glossy transfer is drawn; the pixels are the same.
+/// How glossy transfer is drawn. Passes leave the pixels as they are; a map errs by 0.001.
 struct ExitOptions {
   Passes passes = Passes::automatic;
   ViewBasis view_basis = ViewBasis::polynomial;

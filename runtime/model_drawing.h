@@ -74,6 +74,8 @@ class UncompressedDrawing {
                       const gl::Buffer& indices);
   UncompressedDrawing(const UncompressedDrawing&) = delete;  // programs refer to it
   UncompressedDrawing& operator=(const UncompressedDrawing&) = delete;
+  /// Whether the signal does.
+  static bool fits(const signal::TransferSignal& signal, const ExitLayout& layout);
   void set_light(const LightField& field);
   void draw(const Viewpoint& viewpoint) const;
   /// From exit values that are kept while the light stays (runtime/exit_buffer.h, where they fit).

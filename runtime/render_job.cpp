@@ -86,13 +86,13 @@ Background make_background(const PictureOptions& options, Show show) {
 void render(const RenderOptions& options, Report& report) {
   const PictureOptions& picture = options.picture;
   check_options(picture);
-  if (options.sums && options.draw == Draw::clusters)
-    throw Error(ErrorKind::usage, "--sums has no effect on --draw clusters",
+  if (options.sums && (options.draw == Draw::clusters || options.show != Show::radiance))
+    throw Error(ErrorKind::usage, "--sums has no effect on --draw clusters and false colours",
                 {.expected = "--draw single or uncompressed"});
   check_output(picture.output, picture.no_clobber);
   std::optional<StageTimer> stage(std::in_place, report, "load model");
   const Model model = load_model(picture.model, options.transfer);
-  const View view = make_view(options, model);
+  View view = make_view(options, model);
   stage.emplace(report, "load light");
   const Lighting lighting = make_distant_lighting(options, model);
   stage.emplace(report, "open OpenGL");
@@ -103,6 +103,7 @@ void render(const RenderOptions& options, Report& report) {
   Renderer renderer;
   renderer.set_model(model, options.exit);
   report.json()["pass_count"] = renderer.pass_count();
+  if (!options.draw && !renderer.can_draw(view.draw, view.show)) view.draw = Draw::single;
   renderer.check_can_draw(view.draw, view.show);
   renderer.set_lighting(lighting);
   renderer.set_near_lights(options.near_lights, options.grid_size);

@@ -33,7 +33,7 @@ struct RenderOptions {
   PictureOptions picture;
   std::filesystem::path transfer;  ///< uncompressed; empty: none
   std::optional<Draw> draw;        ///< unset: uncompressed when it is given, else single
-  std::optional<Sums> sums;        ///< unset: kept; not with Draw::clusters
+  std::optional<Sums> sums;        ///< unset: kept; not with Draw::clusters or false colours
   ExitOptions exit;
   std::vector<NearLight> near_lights{};  ///< beside the picture's light, if that is given
   int grid_size = 3;                     ///< that near lights are sampled on

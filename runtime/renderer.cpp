@@ -105,14 +105,13 @@ struct Renderer::Drawings {
       error.emplace(error_colors(model), model.indices.size(), positions, indices);
   }
 
-  /// Matrices may be too many for a texture; compressed transfer is drawn all the same.
+  /// Where matrices are too many for a texture, compressed transfer is drawn all the same.
   void add_uncompressed(const Model& model) {
-    try {
+    uncompressed_fits = UncompressedDrawing::fits(*model.signal, exit.layout());
+    if (uncompressed_fits || !model.transfer)
       uncompressed.emplace(model, exit, positions, indices);
-    } catch (const Error& reason) {
-      if (!model.transfer) throw;
-      log::warning("uncompressed transfer cannot be drawn: {}", reason.what());
-    }
+    else
+      log::warning("the uncompressed transfer does not fit a texture of this OpenGL: not drawn");
   }
 
   void draw(const View& view, int samples) {
@@ -158,6 +157,7 @@ struct Renderer::Drawings {
   gl::Buffer positions, indices;
   ExitStage exit;
   bool can_keep;  // exit values
+  bool uncompressed_fits = true;
   BlackDrawing black;
   std::optional<CompressedDrawing> compressed;
   std::optional<UncompressedDrawing> uncompressed;
@@ -217,6 +217,9 @@ bool Renderer::can_draw(Draw draw, Show show) const {
 
 void Renderer::check_can_draw(Draw draw, Show show) const {
   if (can_draw(draw, show)) return;
+  if (drawings_ && !drawings_->uncompressed_fits && draw == Draw::uncompressed)
+    throw_failed("the uncompressed transfer does not fit a texture of this OpenGL",
+                 {.advice = "Draw the compressed one."});
   throw Error(
       ErrorKind::usage, "the files lack the transfer for this picture",
       {.expected = show == Show::error ? "both compressed and uncompressed transfer"

@@ -60,7 +60,8 @@ class Renderer {
   void set_near_lights(std::vector<NearLight> lights, int grid_size);
 
   bool can_draw(Draw draw, Show show) const;
-  /// Throws Error (usage) saying which transfer is missing.
+  /// Throws Error (usage) saying which transfer is missing, or Error (failed) where the
+  /// uncompressed one is too large for this OpenGL.
   void check_can_draw(Draw draw, Show show) const;
   /// That the model is drawn in; 0 without one.
   int pass_count() const;

@@ -58,6 +58,14 @@ std::vector<Vec4> columns_of(const signal::TransferSignal& signal, const ExitLay
   return columns;
 }
 
+/// Elements of the table that holds either.
+std::size_t table_size(const signal::TransferSignal& signal, const ExitLayout& layout) {
+  const std::size_t vectors = layout.is_glossy()
+                                  ? coefficient_count(signal) * layout.color_vector_count()
+                                  : row_vector_count(signal.band_count);
+  return signal.vertex_count() * static_cast<std::size_t>(signal.channel_count) * vectors;
+}
+
 std::vector<std::uint32_t> numbers(std::size_t count) {
   std::vector<std::uint32_t> numbers(count);
   std::iota(numbers.begin(), numbers.end(), 0u);
@@ -73,14 +81,13 @@ UncompressedDrawing::UncompressedDrawing(const Model& model, const ExitStage& ex
       index_count_(model.indices.size()),
       band_count_(model.signal->band_count),
       array_(array_with_positions(positions, indices)),
+      transfer_(table_size(*model.signal, exit.layout())),
       light_(light_vector_count(band_count_, exit.layout().is_glossy())),
       kept_(exit, numbers(vertex_count_), index_count_, positions, indices) {
   exit.attach(array_);
   const bool is_glossy = exit.layout().is_glossy();
-  const std::vector<Vec4> values =
-      is_glossy ? columns_of(*model.signal, exit.layout()) : padded_rows(*model.signal);
-  transfer_ = gl::Table(values.size());
-  transfer_.upload(values);
+  transfer_.upload(is_glossy ? columns_of(*model.signal, exit.layout())
+                             : padded_rows(*model.signal));
   const char* const shader = is_glossy ? "transfer_matrix.vert" : "transfer_uncompressed.vert";
   const gl::Defines sizes{fmt::format("CHANNEL_COUNT {}", model.signal->channel_count),
                           fmt::format("ROW_VECTOR_COUNT {}", row_vector_count(band_count_))};
@@ -92,6 +99,10 @@ UncompressedDrawing::UncompressedDrawing(const Model& model, const ExitStage& ex
     return ExitBuffer::capturing(
         shader, gl::joined({exit_.capture_defines(), light_.defines(varies), sizes}));
   });
+}
+
+bool UncompressedDrawing::fits(const signal::TransferSignal& signal, const ExitLayout& layout) {
+  return gl::Table::fits(table_size(signal, layout));
 }
 
 void UncompressedDrawing::set_light(const LightField& field) {

@@ -29,17 +29,17 @@ void check_different(const fs::path& written, const char* role, const fs::path& 
 }
 
 void check_extension(const Output& output) {
-  if (fs::is_directory(output.path)) {
+  const std::string found = lower_extension(output.path);
+  if (std::ranges::count(output.extensions, found) > 0) return;
+  std::error_code code;
+  if (fs::is_directory(output.path, code)) {
     throw Error(ErrorKind::usage, "is a folder",
                 {.file = output.path.string(), .advice = "Give the name of a file in it."});
   }
-  const std::string found = lower_extension(output.path);
-  if (std::ranges::count(output.extensions, found) == 0) {
-    throw Error(ErrorKind::usage, "not a kind of file that this tool writes",
-                {.file = output.path.string(),
-                 .found = fmt::format("\"{}\"", found),
-                 .expected = fmt::format("{}", fmt::join(output.extensions, " or "))});
-  }
+  throw Error(ErrorKind::usage, "not a kind of file that this tool writes",
+              {.file = output.path.string(),
+               .found = fmt::format("\"{}\"", found),
+               .expected = fmt::format("{}", fmt::join(output.extensions, " or "))});
 }
 
 }  // namespace
