@@ -21,7 +21,7 @@ namespace prt::transfer {
 
 /// Where what grows with a scene lies.
 struct ScratchOptions {
-  std::filesystem::path folder = std::filesystem::temp_directory_path();
+  std::filesystem::path folder{};            ///< empty: all in memory
   std::size_t in_memory_vertices = 750'000;  ///< of more, in nameless files in the folder
 };
 

@@ -2,6 +2,7 @@
 ones say."""
 
 import json
+import os
 import unittest
 
 from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, WRONG_USAGE, ToolTest
@@ -134,6 +135,9 @@ class Options(ToolTest):
                               ("prt-render", r"(?s)Embree: 3\.\d+.*OpenGL: \d")):
             self.assertRegex(self.done(tool, "--version", "-v").stdout, pattern)
             self.assertEqual(len(self.done(tool, "--version").stdout.splitlines()), 1)
+
+    def test_a_missing_folder_for_temporary_files_is_no_matter(self):
+        self.done("prt-transfer", "--version", env=os.environ | {"TMPDIR": "/missing"})
 
 
 if __name__ == "__main__":

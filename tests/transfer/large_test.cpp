@@ -8,6 +8,9 @@
 namespace prt::transfer {
 namespace {
 
+const ScratchOptions kInFiles{.folder = std::filesystem::temp_directory_path(),
+                              .in_memory_vertices = 0};
+
 double rms_difference(const signal::TransferSignal& a, const signal::TransferSignal& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.values.size(); ++i) {
@@ -20,7 +23,7 @@ double rms_difference(const signal::TransferSignal& a, const signal::TransferSig
 void expect_alike(const mesh::Scene& scene, DiffuseOptions options) {
   DiffuseStats stats, expected_stats;
   const signal::TransferSignal expected = compute_diffuse(scene, options, expected_stats);
-  options.scratch.in_memory_vertices = 0;
+  options.scratch = kInFiles;
   const signal::TransferSignal signal = compute_diffuse(scene, options, stats);
   ASSERT_EQ(signal.values.size(), expected.values.size());
   EXPECT_LT(rms_difference(signal, expected), 2e-5);
@@ -52,8 +55,7 @@ TEST(LargeScene, HasTheBouncesOfASmallOne) {
 
 TEST(LargeScene, GivesTheSameBytesWithAnyNumberOfThreads) {
   const mesh::Scene scene = sunk_sphere(4);
-  const DiffuseOptions options{
-      .ray_count = 32, .bounce_count = 1, .scratch = {.in_memory_vertices = 0}};
+  const DiffuseOptions options{.ray_count = 32, .bounce_count = 1, .scratch = kInFiles};
   const auto expected = compute(scene, options);
   set_thread_count(1);
   EXPECT_EQ(compute(scene, options).values, expected.values);

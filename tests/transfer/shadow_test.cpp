@@ -202,7 +202,8 @@ TEST(Hemisphere, AnswersAlikeWhateverTraces) {
   for (Vec3& p : mesh.positions) p.y += 1.2f;
   append(mesh, grid(Vec3(-3, 0, -3), Vec3(0, 0, 6), Vec3(6, 0, 0), 8));
   const mesh::Scene scene = scene_of(mesh);
-  const ScratchOptions in_files{.in_memory_vertices = 0};
+  const ScratchOptions in_files{.folder = std::filesystem::temp_directory_path(),
+                                .in_memory_vertices = 0};
   SceneIndex small(scene), few_rays(scene), large(scene, in_files), large_few_rays(scene, in_files);
   small.build_for_shadow_rays(1000);
   large.build_for_shadow_rays(1000);
