@@ -10,7 +10,8 @@
 // A corner's x and y depend on the corner and the ray alone, and the products are rounded each for
 // itself (no fused multiply-add), so that an edge has opposite signs in the two triangles that
 // share it, whatever is rounded: no ray passes between them. The boxes allow for the roundings of x
-// and y and of their own test by a relative margin of the ray's parameter.
+// and y by an absolute margin, and for those of their own test by a relative one of the ray's
+// parameter.
 #pragma once
 
 #include "ray/shadow_planes.h"
@@ -23,8 +24,8 @@ constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
 /// The ray and the passes' constants. s is the depth along axis m: t = s / length.
 struct RayFrame {
-  float origin[3];
-  Lanes reciprocal[3];  ///< of the direction, made 1 along m, by axis
+  float near_origin[3], far_origin[3];  ///< for bounds by which it enters and leaves wider boxes
+  Lanes reciprocal[3];                  ///< of the direction, made 1 along m, by axis
   int near[3], far[3];  ///< rows of a node's bounds that face the origin and look away
   int p, q, m;
   Lanes o[3];  ///< the origin's coordinates p, q, m
@@ -37,7 +38,15 @@ struct RayFrame {
 PRT_LANES float magnitude(float a) { return a < 0.0f ? -a : a; }
 
 PRT_LANES RayFrame make_frame(const RayQuery& query) {
-  const float* d = query.direction;
+  const float *d = query.direction, *o = query.origin;
+  // 8 units of rounding of the largest coordinate: distances from the origin are up to twice that,
+  // and a corner's x has the roundings of its distance, of its depth, times u, and of u, times its
+  // depth: 6. One more is for the origins made here.
+  float largest = 1.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (magnitude(o[axis]) > largest) largest = magnitude(o[axis]);
+  }
+  const float margin = 0x1p-21f * largest;
   RayFrame f;
   f.m = magnitude(d[1]) > magnitude(d[0]) ? 1 : 0;
   if (magnitude(d[2]) > magnitude(d[f.m])) f.m = 2;
@@ -52,11 +61,10 @@ PRT_LANES RayFrame make_frame(const RayQuery& query) {
     f.reciprocal[axis] = broadcast(1.0f / safe);
     f.near[axis] = negative ? 3 + axis : axis;
     f.far[axis] = negative ? axis : 3 + axis;
-    f.origin[axis] = query.origin[axis];
+    f.near_origin[axis] = negative ? o[axis] - margin : o[axis] + margin;
+    f.far_origin[axis] = negative ? o[axis] + margin : o[axis] - margin;
   }
-  f.o[0] = broadcast(query.origin[f.p]);
-  f.o[1] = broadcast(query.origin[f.q]);
-  f.o[2] = broadcast(query.origin[f.m]);
+  f.o[0] = broadcast(o[f.p]), f.o[1] = broadcast(o[f.q]), f.o[2] = broadcast(o[f.m]);
   f.minus_u = broadcast(-d[f.p] / f.length), f.minus_v = broadcast(-d[f.q] / f.length);
   f.sign = broadcast(d[f.m] < 0.0f ? -0.0f : 0.0f);
   f.s_near = query.t_near * f.length, f.s_far = query.t_far * f.length;
@@ -65,14 +73,14 @@ PRT_LANES RayFrame make_frame(const RayQuery& query) {
 
 /// Children of a node that the ray meets before s_far; `entry`: where.
 PRT_LANES Mask meet_children(const ShadowNode& node, const RayFrame& f, float s_far, Lanes& entry) {
-  // 16 units of rounding, 2^-24: 3 of a corner's x and y and 3 of a bound's s, at both ends.
+  // 16 units of rounding, 2^-24: 3 of a bound's s, at both ends, are 6.
   constexpr float kBeyond = 1.0f + 0x1p-20f;
   Lanes near = broadcast(f.s_near), far = broadcast(s_far);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
-    const Lanes origin = broadcast(f.origin[axis]);
-    near = max(near, (load(node.bounds[f.near[axis]]) - origin) * f.reciprocal[axis]);
-    far = min(far, (load(node.bounds[f.far[axis]]) - origin) * f.reciprocal[axis]);
+    const Lanes in = broadcast(f.near_origin[axis]), out = broadcast(f.far_origin[axis]);
+    near = max(near, (load(node.bounds[f.near[axis]]) - in) * f.reciprocal[axis]);
+    far = min(far, (load(node.bounds[f.far[axis]]) - out) * f.reciprocal[axis]);
   }
   entry = near;
   return le(0xffffu, near, far * broadcast(kBeyond));

@@ -68,6 +68,29 @@ TEST(WideEngine, PartsMayShareAPlace) {
   EXPECT_NEAR(hit.t, 1.0f, 1e-5f);
 }
 
+/// Leaves' boxes end at the floor's edges. Rays aimed at these are within rounding of both boxes.
+TEST(WideEngine, NoRayPassesBetweenTrianglesInDifferentLeaves) {
+  constexpr std::uint32_t kEdges = 65;
+  Soup floor;
+  for (std::uint32_t i = 0; i < kEdges; ++i) {
+    const float x = 0.99f * (static_cast<float>(i) / 32.0f - 1.0f);
+    floor.positions.insert(floor.positions.end(), {{x, 0.0f, -1.0f}, {x, 0.0f, 1.0f}});
+    if (i + 1 == kEdges) break;
+    for (std::uint32_t v : {0, 1, 2, 2, 1, 3}) floor.indices.push_back(2 * i + v);
+  }
+  Pcg32 random(16);
+  const auto within = [&](float extent) { return extent * (2.0f * random.uniform() - 1.0f); };
+  std::vector<Ray> rays;
+  for (int i = 0; i < 400'000; ++i) {
+    const float height = i % 2 == 0 ? 0.01f : 0.001f;
+    const float edge = floor.positions[2 * (1 + random.below(kEdges - 2))].x;
+    const Vec3 target(edge + within(3e-8f), 0.0f, within(0.9f));
+    const Vec3 origin(edge + within(3 * height), height, target.z + within(3 * height));
+    rays.push_back({origin, 0.0f, target - origin});
+  }
+  for (const Hit& hit : wide_hits(floor, rays, 2000)) ASSERT_NE(hit.triangle, kNoHit);
+}
+
 TEST(WideTree, ADiskWithoutRoomIsAnError) {
   const Soup soup = random_soup(10, 0.5f, 3);
   EXPECT_THROW(WideTree(TriangleSource::of(soup.triangles()), {.folder = "/nowhere"}), Error);
