@@ -90,6 +90,7 @@ class VisibilityPass {
       for (std::size_t k = 0; k < count_; ++k) row[k] -= sum[k];
       buried_[vertex] = sees_nothing(hemisphere);
     }
+    trim_mapped_arrays();
     return hemisphere.rays_cast();
   }
 
