@@ -70,6 +70,7 @@ class DiffuseBake {
   }
 
   signal::TransferSignal run() {
+    if (options_.bounce_count > 0) make_bounce_fields();
     if (options_.shadowed) {
       direct_pass();
     } else {
@@ -167,7 +168,7 @@ class DiffuseBake {
   /// lie in files, all.
   std::size_t bounced_columns() const {
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
-    if (index_.is_large()) return coefficient_count_;
+    if (index_.is_large() || index_.vertex_count() == 0) return coefficient_count_;
     const std::size_t fit = options_.bounce_bytes /
                             (3 * sizeof(float) * channels * index_.vertex_count()) / kRowPadding;
     return fit > 0 ? std::min(fit * kRowPadding, padded(coefficient_count_)) : 1;
@@ -198,7 +199,15 @@ class DiffuseBake {
     stats_.bounce_seconds = watch.seconds();
   }
 
-  /// One state holds the sum of the bounces so far, the last bounce, and their number: what the
+  /// Before anything is traced: a disk that is too small for them is an error at once.
+  void make_bounce_fields() {
+    const std::size_t size = index_.vertex_count() *
+                             static_cast<std::size_t>(signal_.channel_count) * bounced_columns();
+    state_ = MappedArray<float>(2 * size + 1, index_.scratch_folder());
+    next_ = MappedArray<float>(size, index_.scratch_folder());
+  }
+
+  /// state_ holds the sum of the bounces so far, the last bounce, and their number: what the
   /// checkpoint keeps, at the end and, in long computations, now and then before. Returns how many
   /// columns' worth of bounces it had.
   double bounce_columns(const BuriedRepair& repair, const Reflection& reflection, std::size_t first,
@@ -206,16 +215,15 @@ class DiffuseBake {
     const auto channels = static_cast<std::size_t>(signal_.channel_count);
     const std::size_t used = std::min(columns, coefficient_count_ - first);
     const std::size_t stride = channels * columns, size = index_.vertex_count() * stride;
-    MappedArray<float> state(2 * size + 1, index_.scratch_folder());
-    MappedArray<float> next(size, index_.scratch_folder());
-    float *sum = state.data(), *field = sum + size, &done = state[2 * size];
+    float *sum = state_.data(), *field = sum + size, &done = state_[2 * size];
     const auto for_each_segment = [&](const auto& body) {
       for_each_trimmed(index_.vertex_count() * channels, [&](std::size_t i) {
         body(&signal_.values[i * coefficient_count_ + first], i * columns);
       });
     };
     const Checkpoint::Name name{kBounceStage, static_cast<std::uint32_t>(first)};
-    if (!checkpoint_.restore(name, std::span(state))) {
+    if (!checkpoint_.restore(name, std::span(state_))) {
+      done = 0.0f;
       for_each_segment([&](const float* value, std::size_t at) {
         std::copy_n(value, used, &sum[at]);
         std::copy_n(value, used, &field[at]);
@@ -225,16 +233,16 @@ class DiffuseBake {
     progress.advance(static_cast<std::size_t>(done) * index_.vertex_count());
     Stopwatch since_stored;
     while (done < static_cast<float>(options_.bounce_count)) {
-      stats_.rays_cast += reflection.gather(field, columns, next.data());
-      repair.apply(next.data(), stride);
+      stats_.rays_cast += reflection.gather(field, columns, next_.data());
+      repair.apply(next_.data(), stride);
       parallel_for(size, kFieldBlock * stride, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) sum[i] += field[i] = next[i];
+        for (std::size_t i = begin; i < end; ++i) sum[i] += field[i] = next_[i];
         trim_mapped_arrays();
       });
       ++done;
       if (since_stored.seconds() >= options_.checkpoint.after_seconds ||
           done == static_cast<float>(options_.bounce_count)) {
-        checkpoint_.store(name, std::span<const float>(state));
+        checkpoint_.store(name, std::span<const float>(state_));
         since_stored = {};
       }
       progress.advance(index_.vertex_count());
@@ -280,6 +288,7 @@ class DiffuseBake {
   Checkpoint checkpoint_;
   signal::TransferSignal signal_;
   MappedArray<std::uint8_t> buried_;
+  MappedArray<float> state_, next_;  // with bounces only
 };
 
 }  // namespace
