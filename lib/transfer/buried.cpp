@@ -88,9 +88,10 @@ bool sees_nothing(const Hemisphere& hemisphere) {
 std::uint64_t confirm_buried(const SceneIndex& index, const Directions& directions,
                              std::span<std::uint8_t> buried) {
   std::vector<std::uint32_t> suspects;
-  for (std::uint32_t v : index.vertex_order()) {
+  for_each_trimmed(index.vertex_count(), [&](std::size_t i) {
+    const std::uint32_t v = index.vertex_order()[i];
     if (buried[v]) suspects.push_back(v);
-  }
+  });
   if (suspects.empty()) return 0;
   index.engine();  // is built by all threads, not by the first that asks for it
   std::vector<std::uint64_t> rays(block_count(suspects.size(), kSuspectBlock));
@@ -124,10 +125,13 @@ BuriedRepair::BuriedRepair(const SceneIndex& index, std::span<const std::uint8_t
   } while (!ring.empty());
 }
 
-std::vector<std::uint32_t> BuriedRepair::stand_ins(std::size_t vertex_count) const {
-  std::vector<std::uint32_t> stand_ins(vertex_count);
-  std::iota(stand_ins.begin(), stand_ins.end(), 0u);
-  for (const Step& step : steps_) stand_ins[step.vertex] = stand_ins[sources_[step.source_begin]];
+MappedArray<std::uint32_t> BuriedRepair::stand_ins(const SceneIndex& index) const {
+  MappedArray<std::uint32_t> stand_ins(index.vertex_count(), index.scratch_folder());
+  for_each_trimmed(stand_ins.size(),
+                   [&](std::size_t v) { stand_ins[v] = static_cast<std::uint32_t>(v); });
+  for_each_trimmed(steps_.size(), [&](std::size_t i) {
+    stand_ins[steps_[i].vertex] = stand_ins[sources_[steps_[i].source_begin]];
+  });
   return stand_ins;
 }
 

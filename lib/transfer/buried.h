@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/mapped_array.h"
 #include "transfer/hemisphere.h"
 #include "transfer/scene_index.h"
 
@@ -33,9 +34,9 @@ class BuriedRepair {
   /// Fills the marked rows of a field of `stride` floats a vertex; rows of vertices that nothing
   /// unburied is connected to stay as they are.
   void apply(float* rows, std::size_t stride) const;
-  /// One vertex for each of vertex_count: itself, or for a marked one the first of those that its
+  /// One vertex for each of the index: itself, or for a marked one the first of those that its
   /// row is the mean of, or what stands for that.
-  std::vector<std::uint32_t> stand_ins(std::size_t vertex_count) const;
+  MappedArray<std::uint32_t> stand_ins(const SceneIndex& index) const;
   std::size_t repaired_count() const { return steps_.size(); }
 
  private:

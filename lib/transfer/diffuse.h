@@ -71,9 +71,9 @@ struct DiffuseStats {
 /// Transfer of all vertices of the scene, one exit row. The same bytes for any number of threads.
 /// Beyond input and output, memory stays under 500 MB whatever the number of vertices: what else
 /// grows with a large scene lies in files (transfer/scene_index.h), some 120 bytes a vertex, and
-/// with bounces three times the output. Throws Error (usage) on options out of range, Error
-/// (bad_input) on positions or normals that are not finite and Error (failed) when there is no room
-/// for files.
+/// with bounces three times the output; only vertices that are buried take some 300 bytes each.
+/// Throws Error (usage) on options out of range, Error (bad_input) on positions or normals that are
+/// not finite and Error (failed) when there is no room for files.
 signal::TransferSignal compute_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
                                        DiffuseStats& stats);
 

@@ -41,7 +41,7 @@ MatrixReflection::MatrixReflection(const SceneIndex& index, const Visibility& vi
       column_count_(static_cast<std::size_t>(channel_count) * function_count_),
       direction_basis_(directions_.count() * function_count_),
       lobe_(sh::disk_lobe(band_count, std::numbers::pi / 2)),
-      ranks_(index.vertex_count()) {
+      ranks_(index.vertex_count(), index.scratch_folder()) {
   const auto weight =
       static_cast<float>(4.0 * std::numbers::pi / static_cast<double>(directions_.count()));
   for (std::size_t d = 0; d < directions_.count(); ++d) {
@@ -49,9 +49,9 @@ MatrixReflection::MatrixReflection(const SceneIndex& index, const Visibility& vi
                  {&direction_basis_[d * function_count_], function_count_});
   }
   for (float& value : direction_basis_) value *= weight;
-  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+  for_each_trimmed(ranks_.size(), [&](std::size_t i) {
     ranks_[index.vertex_order()[i]] = static_cast<std::uint32_t>(i);
-  }
+  });
 }
 
 std::size_t MatrixReflection::block_size() const {

@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "core/mapped_array.h"
 #include "transfer/directions.h"
 #include "transfer/matrix_field.h"
 #include "transfer/matrix_visibility.h"
@@ -61,7 +62,7 @@ class MatrixReflection {
   std::size_t column_count_;            // channels × n²
   std::vector<float> direction_basis_;  // directions × n²: w y_i(d)
   std::vector<double> lobe_;            // the hemisphere about +Z
-  std::vector<std::uint32_t> ranks_;
+  MappedArray<std::uint32_t> ranks_;
 };
 
 }  // namespace prt::transfer

@@ -33,7 +33,7 @@ class VisibilityPass {
         count_(sh::row_size(options.band_count)),
         lobe_(sh::disk_lobe(options.band_count, std::numbers::pi / 2)),
         rows_(index.vertex_count() * count_, index.scratch_folder()),
-        buried_(index.vertex_count()) {}
+        buried_(index.vertex_count(), index.scratch_folder()) {}
 
   Visibility run() {
     const Stopwatch watch;
@@ -57,7 +57,7 @@ class VisibilityPass {
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), confirming_rays);
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
-    return {std::move(rows_), repair.stand_ins(index_.vertex_count())};
+    return {std::move(rows_), repair.stand_ins(index_)};
   }
 
  private:
@@ -98,9 +98,8 @@ class VisibilityPass {
     std::size_t vertex = 0;
     for (const mesh::Primitive& primitive : index_.scene().primitives) {
       const std::size_t count = primitive.mesh.vertex_count();
-      const auto first = buried_.begin() + static_cast<std::ptrdiff_t>(vertex);
-      const auto number = static_cast<std::size_t>(
-          std::count(first, first + static_cast<std::ptrdiff_t>(count), 1));
+      const std::uint8_t* first = buried_.data() + vertex;
+      const auto number = static_cast<std::size_t>(std::count(first, first + count, 1));
       stats_.primitives.push_back({primitive.name, count, primitive.mesh.triangle_count(), number});
       stats_.buried_vertex_count += number;
       vertex += count;
@@ -116,7 +115,7 @@ class VisibilityPass {
   const std::size_t count_;
   const std::vector<double> lobe_;  // the hemisphere about +Z
   MappedArray<float> rows_;
-  std::vector<std::uint8_t> buried_;
+  MappedArray<std::uint8_t> buried_;
 };
 
 }  // namespace

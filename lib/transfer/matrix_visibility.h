@@ -26,7 +26,7 @@ struct Visibility {
   /// from their neighbours (transfer/buried.h).
   MappedArray<float> rows;
   /// For each vertex itself, or for a buried one the vertex whose surroundings stand for its own.
-  std::vector<std::uint32_t> stand_ins;
+  MappedArray<std::uint32_t> stand_ins;
 };
 
 /// The same bytes for any number of threads. Sets everything in `stats` but the bounces and

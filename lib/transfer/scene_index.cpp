@@ -57,7 +57,6 @@ SceneIndex::SceneIndex(const mesh::Scene& scene, const ScratchOptions& scratch)
   if (vertex_count() > 0)
     scale_ = ray::unit_scale(largest_coordinate(box.max * 0.5f - box.min * 0.5f));
 
-  for (std::size_t v = 0; v < vertex_count(); ++v) ray::check_position(position(v), v);
   for (const mesh::Primitive& primitive : scene.primitives) {
     ray::check_indices(primitive.mesh.indices, primitive.mesh.vertex_count());
   }
@@ -167,10 +166,13 @@ void SceneIndex::share_between_equals(const SpatialGrid& grid,
   };
   const auto cell = [&](std::size_t place) { return grid.cell(position(vertex_order_[place])); };
   std::vector<std::uint32_t> run;
-  for (std::size_t begin = 0, end = 0; begin < vertex_count(); begin = end) {
-    for (end = begin + 1; end < vertex_count() && cell(end) == cell(begin);) ++end;
-    if (end - begin == 1) continue;
+  std::size_t begin = 0;  // of a run
+  for_each_trimmed(vertex_count(), [&](std::size_t place) {
+    const std::size_t end = place + 1;
+    if (end < vertex_count() && cell(end) == cell(place)) return;
     run.assign(vertex_order_.begin() + begin, vertex_order_.begin() + end);
+    begin = end;
+    if (run.size() == 1) return;
     std::sort(run.begin(), run.end(), [&](std::uint32_t a, std::uint32_t b) {
       const auto ka = key(a), kb = key(b);
       return ka != kb ? ka < kb : a < b;
@@ -179,7 +181,7 @@ void SceneIndex::share_between_equals(const SpatialGrid& grid,
       for (next = i + 1; next < run.size() && key(run[next]) == key(run[i]);) ++next;
       if (next - i > 1) share(std::span(run).subspan(i, next - i));
     }
-  }
+  });
 }
 
 SceneIndex::Place SceneIndex::place(const std::vector<std::size_t>& offsets, std::size_t number) {

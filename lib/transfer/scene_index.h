@@ -27,9 +27,8 @@ struct ScratchOptions {
 
 class SceneIndex {
  public:
-  /// Throws Error (bad_input) on numbers that are not finite or too large to be traced, Error
-  /// (failed) on more than 2^32 - 2 vertices or triangles and when the scratch folder has no room.
-  /// The scene must outlive this.
+  /// Throws Error (bad_input) on numbers that are not finite, Error (failed) on more than 2^32 - 2
+  /// vertices or triangles and when the scratch folder has no room. The scene must outlive this.
   explicit SceneIndex(const mesh::Scene& scene, const ScratchOptions& scratch = {});
 
   struct Place {
