@@ -182,10 +182,7 @@ class DiffuseBake {
     Reflection reflection(index_,
                           make_directions(2 * static_cast<std::size_t>(rays), options_.seed),
                           signal_.channel_count, std::move(blocked), options_.hit_bytes);
-    {
-      Progress progress("bounce rays", index_.vertex_count(), "vertices");
-      stats_.rays_cast += reflection.trace(progress);
-    }
+    stats_.rays_cast += reflection.trace();
     const std::size_t columns = bounced_columns();
     Progress progress("bounces",
                       block_count(coefficient_count_, columns) *
@@ -201,8 +198,8 @@ class DiffuseBake {
 
   /// Before anything is traced: a disk that is too small for them is an error at once.
   void make_bounce_fields() {
-    const std::size_t size = index_.vertex_count() *
-                             static_cast<std::size_t>(signal_.channel_count) * bounced_columns();
+    const std::size_t size =
+        index_.vertex_count() * static_cast<std::size_t>(signal_.channel_count) * bounced_columns();
     state_ = MappedArray<float>(2 * size + 1, index_.scratch_folder());
     next_ = MappedArray<float>(size, index_.scratch_folder());
   }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "core/progress.h"
 
 namespace prt::transfer {
 
@@ -44,9 +45,10 @@ Reflection::Reflection(const SceneIndex& index, Directions directions, int chann
                                         sizeof(PackedHit))),
       blocks_(room_ > 0 ? block_count(index.vertex_count(), kVertexBlock) : 0) {}
 
-std::uint64_t Reflection::trace(Progress& progress) {
+std::uint64_t Reflection::trace() {
   index_.engine();
   if (blocks_.empty()) return 0;
+  Progress progress("bounce rays", index_.vertex_count(), "vertices");
   std::vector<std::uint64_t> rays(blocks_.size());
   parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
     if (room_ <= 0) return;

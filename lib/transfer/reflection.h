@@ -12,7 +12,6 @@
 #include <span>
 #include <vector>
 
-#include "core/progress.h"
 #include "transfer/hemisphere.h"
 #include "transfer/scene_index.h"
 
@@ -31,7 +30,7 @@ class Reflection {
              MappedArray<float> blocked, std::size_t hit_bytes);
 
   /// Traces all vertices and keeps their hits while there is room. Returns the number of rays cast.
-  std::uint64_t trace(Progress& progress);
+  std::uint64_t trace();
 
   /// One bounce: next_v = ∫ reflected albedo/pi · field. Fields have columns floats a channel,
   /// channel after channel, a row a vertex. Returns the number of rays cast.
