@@ -6,6 +6,7 @@
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "core/error.h"
+#include "core/exit_rows.h"
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "ray/engine.h"
@@ -63,7 +64,7 @@ void add_matrix_options(cli::Options& app, Options& options) {
       ->check(cli::IsMember({"diffuse", "matrix"}));
   group(app.add_option("--rows", options.row_count,
                        "Exit coefficients, n*n or, without l=1 m=0, n*n - 1; 25 if not given"))
-      ->check(cli::Range(transfer::kMinMatrixRowCount, 256))
+      ->check(cli::Range(transfer::kMinMatrixRowCount, kMaxExitRowCount))
       ->check(cli::accepted_by([](const auto& n) { sh::hemisphere_functions(std::stoi(n)); }));
   group(app.add_option("--brdf", options.brdf,
                        std::string(brdf::kBrdfSyntax) + "; from-material if not given"))

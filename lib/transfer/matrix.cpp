@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/exit_rows.h"
 #include "core/mapped_array.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -39,7 +40,8 @@ void check_options(const MatrixOptions& options) {
   check_range("band count of a transfer matrix", options.band_count, 1, kMaxMatrixBandCount);
   check_range("ray count", options.ray_count, 1, kMaxRayCount);
   check_bounces(options.bounce_count, options.bounce_ray_count, options.shadowed);
-  check_range("row count of a transfer matrix", options.row_count, kMinMatrixRowCount, 256);
+  check_range("row count of a transfer matrix", options.row_count, kMinMatrixRowCount,
+              kMaxExitRowCount);
   sh::hemisphere_functions(options.row_count);
 }
 
