@@ -22,7 +22,7 @@ namespace prt {
 class Mapping {
  public:
   /// In a nameless file in the folder, or, if its name is empty, in memory.
-  explicit Mapping(const std::filesystem::path& folder);
+  explicit Mapping(const std::filesystem::path& folder = {});
   ~Mapping();
   Mapping(Mapping&& other) noexcept;
   Mapping& operator=(Mapping&& other) noexcept;
@@ -50,6 +50,12 @@ class MappedArray {
   explicit MappedArray(std::size_t count = 0, const std::filesystem::path& folder = {})
       : mapping_(folder) {
     resize(count);
+  }
+  MappedArray(MappedArray&& other) noexcept { *this = std::move(other); }
+  MappedArray& operator=(MappedArray&& other) noexcept {
+    std::swap(mapping_, other.mapping_);
+    std::swap(size_, other.size_);
+    return *this;
   }
 
   /// New elements are zero bytes, unless push_back or resize had them before.

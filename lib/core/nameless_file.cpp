@@ -38,10 +38,17 @@ NamelessFile::NamelessFile(std::filesystem::path folder)
 NamelessFile::~NamelessFile() { close(descriptor_); }
 
 void NamelessFile::grow(std::size_t byte_count) {
-  if (byte_count == 0) return;
+  if (byte_count <= byte_count_) return;
   std::signal(SIGXFSZ, SIG_IGN);  // a size limit then shows as EFBIG
-  const int error = posix_fallocate(descriptor_, 0, static_cast<off_t>(byte_count));
-  if (error == 0) return;
+  int error = EINTR;
+  while (error == EINTR) {
+    error = posix_fallocate(descriptor_, static_cast<off_t>(byte_count_),
+                            static_cast<off_t>(byte_count - byte_count_));
+  }
+  if (error == 0) {
+    byte_count_ = byte_count;
+    return;
+  }
   throw_failed(
       "no room for temporary data",
       {.file = folder_.string(),

@@ -1,5 +1,5 @@
 // A file without a name: room on disk for what a computation does not keep in memory. It goes with
-// its owner, however the process ends.
+// its owner, however the process ends. On tmpfs files are memory.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ class NamelessFile {
   NamelessFile& operator=(const NamelessFile&) = delete;
 
   /// Makes the file byte_count long, zeros from its old end on, and takes all the room for them
-  /// now: later writes, also through a mapping, do not fail for want of it. Throws Error (failed)
-  /// when there is no such room.
+  /// now: where the file system can promise it, later writes, also through a mapping, do not fail
+  /// for want of it. Throws Error (failed) when there is no such room.
   void grow(std::size_t byte_count);
 
   int descriptor() const { return descriptor_; }
@@ -26,6 +26,7 @@ class NamelessFile {
  private:
   std::filesystem::path folder_;
   int descriptor_ = -1;
+  std::size_t byte_count_ = 0;
 };
 
 }  // namespace prt

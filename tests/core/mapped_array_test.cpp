@@ -41,6 +41,9 @@ TEST(MappedArray, IsAnArrayOfZerosThatGrows) {
     EXPECT_EQ(array.size(), 3u);
     EXPECT_EQ(array[1], 7u);
     EXPECT_EQ(other[99'999], 99'999u);
+    const MappedArray<std::uint32_t> moved = std::move(other);
+    EXPECT_EQ(moved.size(), 300'000u);
+    EXPECT_TRUE(other.empty());
   }
 }
 
