@@ -1,6 +1,6 @@
-// Batches of rays against a set of triangles: one interface, several engines (Embree first). All
-// calls are thread safe, deterministic, and do not allocate; a batch runs on the calling thread, 16
-// rays at a time: fastest when those have about the same origin and direction.
+// Batches of rays against a set of triangles: one interface, two engines, Embree's and that of
+// large scenes (ray/wide_engine.h). All calls are thread safe, deterministic, and do not allocate;
+// a batch runs on the calling thread.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,8 @@ class Engine {
 /// Version of Embree, "3.13.5".
 std::string embree_version();
 
-/// Embree 3, robust mode: tight along edges; of rays aimed at a vertex to the last bit a few in a
+/// Embree 3, robust mode, 16 rays of a batch at a time: fastest when those have about the same
+/// origin and direction. Tight along edges; of rays aimed at a vertex to the last bit a few in a
 /// thousand pass. Copies what it needs of the triangles.
 std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles);
 
@@ -69,8 +70,8 @@ std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles);
 /// enough that rounding cannot put it on the other side: a step of a few units in the last place of
 /// the numbers that p comes from, after [Wächter, Binder 2019, Ray Tracing Gems ch. 6]. `magnitude`
 /// is the largest absolute coordinate of those numbers (of the triangles around p) and makes the
-/// step right at any scale; the default is that paper's, for p near the origin of a scene in
-/// metres.
+/// step right at any scale; the default, of benchmarks and tests, is that paper's, for p near the
+/// origin of a scene in metres.
 Vec3 offset_origin(const Vec3& p, const Vec3& n, float magnitude = 1.0f / 32.0f);
 
 /// The power of two, which rounds nothing, that brings coordinates up to `largest` into [-2, 2]:

@@ -12,12 +12,10 @@ class WideEngine final : public Engine {
  public:
   WideEngine(std::shared_ptr<const WideTree> tree, SimdLevel level)
       : tree_(std::move(tree)),
-        find_closest_(level == SimdLevel::avx512 ? find_closest_avx512
-                      : level == SimdLevel::avx2 ? find_closest_avx2
-                                                 : find_closest_baseline),
-        is_occluded_(level == SimdLevel::avx512 ? is_occluded_avx512
-                     : level == SimdLevel::avx2 ? is_occluded_avx2
-                                                : is_occluded_baseline) {}
+        find_closest_(
+            kernel_for(level, find_closest_avx512, find_closest_avx2, find_closest_baseline)),
+        is_occluded_(
+            kernel_for(level, is_occluded_avx512, is_occluded_avx2, is_occluded_baseline)) {}
 
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits) const override {
     assert(hits.size() == rays.size());

@@ -108,7 +108,7 @@ class WideTreeBuilder {
         largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
       }
     }
-    return largest > 0.0f ? std::ldexp(1.0f, -std::max(std::ilogb(largest) + 1, -126)) : 1.0f;
+    return 0.5f * unit_scale(largest);
   }
 
   std::array<Vec3, 3> corners(std::size_t triangle) const {
