@@ -1,11 +1,13 @@
 #include "reference/surface.h"
 
 #include <ImathBox.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/log.h"
 
 namespace prt::reference {
@@ -83,7 +85,13 @@ void SurfaceLookup::add_triangles() {
     const auto first_vertex = static_cast<std::uint32_t>(positions_.size());
     first_triangle_.push_back(static_cast<std::uint32_t>(primitive_of_triangle_.size()));
     positions_.insert(positions_.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Vec3& position : mesh.positions) box.extendBy(position);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      if (!is_finite(mesh.positions[v])) {
+        throw_bad_input("position is not finite",
+                        {.element = fmt::format("{}, vertex {}", scene_.primitives[p].name, v)});
+      }
+      box.extendBy(mesh.positions[v]);
+    }
     for (const std::uint32_t index : mesh.indices) indices_.push_back(first_vertex + index);
     primitive_of_triangle_.insert(primitive_of_triangle_.end(), mesh.triangle_count(),
                                   static_cast<std::uint32_t>(p));

@@ -17,7 +17,7 @@ namespace prt::reference {
 /// weighted by the cosine to it.
 struct SurfacePoint {
   Vec3 origin;  ///< where its rays start: just off the triangle, on the side of the normal;
-                ///< relative to the scene's centre
+                ///< relative to the scene's centre, in units of 1 / scale()
   /// z is the shading normal, the normalised interpolation of the vertices'; x and y are the axes
   /// of the lobes, of interpolated tangents where the BRDF is anisotropic. May be left-handed.
   mesh::Frame frame;
@@ -42,7 +42,8 @@ struct SurfacePoint {
 /// the scene.
 class SurfaceLookup {
  public:
-  /// `brdf` by brdf::kBrdfSyntax, of all surfaces. Throws Error (usage) when it is not.
+  /// `brdf` by brdf::kBrdfSyntax, of all surfaces. Throws Error (usage) when it is not, and Error
+  /// (bad_input) on positions that are not finite.
   SurfaceLookup(const mesh::Scene& scene, std::string_view brdf);
 
   /// The middle of the scene. All that is traced is relative to it: small scenes far from the

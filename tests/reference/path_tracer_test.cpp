@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "error_of.h"
 #include "scenes.h"
 #include "sh/basis.h"
 
@@ -348,6 +349,17 @@ TEST(PathTracer, RejectsOptionsOutOfRange) {
   const auto camera = look({0.0f, 0.0f, 4.0f}, {0.0f, 0.0f, 0.0f}, 40.0f);
   for (const Options& options : {small(0, 1, 0), small(8, 0, 0), small(8, 1, -1)}) {
     EXPECT_THROW(trace({}, camera, kWhite, options), Error);
+  }
+}
+
+TEST(PathTracer, NamesAVertexThatIsNotFinite) {
+  mesh::Scene scene;
+  add_quad(scene, Vec3(0.0f), {1, 0, 0}, {0, 1, 0}, add_material(scene, Vec3(1.0f)));
+  add_quad(scene, Vec3(0.0f), {1, 0, 0}, {0, 1, 0}, 0);
+  scene.primitives[1].name = "second";
+  for (float bad : {INFINITY, NAN}) {
+    scene.primitives[1].mesh.positions[2].y = bad;
+    EXPECT_HAS(error_of([&] { trace(scene, {}, kWhite, {}); }), "second, vertex 2");
   }
 }
 
