@@ -1,5 +1,6 @@
 // Scenes whose arrays and trees lie in files, by a threshold of none in memory.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -73,6 +74,21 @@ TEST(LargeScene, NeedsAFolderToWriteTo) {
     EXPECT_EQ(error.kind(), ErrorKind::failed);
     EXPECT_NE(std::string(error.what()).find("/nowhere"), std::string::npos);
   }
+}
+
+/// A limit on the size of files, that of the trees but not of the fields, stands for a full disk.
+TEST(LargeScene, RoomForBouncesIsMissedBeforeRaysAreCast) {
+  const DiffuseOptions options{.ray_count = 16, .bounce_count = 1, .scratch = kInFiles};
+  const mesh::Scene scene = scene_of(sphere(4));
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{100'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  DiffuseStats stats;
+  EXPECT_THROW(compute_diffuse(scene, options, stats), Error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_GT(stats.build_seconds, 0.0);
+  EXPECT_EQ(stats.rays_cast, 0u);
 }
 
 }  // namespace
