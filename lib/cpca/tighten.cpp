@@ -90,7 +90,7 @@ class Tightener {
                       .component_count = static_cast<int>(count),
                       .means = std::vector<float>(cluster_count * n_),
                       .bases = std::vector<float>(cluster_count * count * n_),
-                      .component_counts = is_adaptive_ ? wanted_ : std::vector<std::uint32_t>(),
+                      .component_counts = is_adaptive_ ? subspaces.used : std::vector<std::uint32_t>(),
                       .cluster_of_point = clusterer_.labels(),
                       .weights = {}};
     for (std::size_t k = 0; k < cluster_count; ++k) {
