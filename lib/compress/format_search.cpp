@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -71,8 +72,14 @@ class FormatSearch {
   }
 
   Result run() {
+    std::exception_ptr failure;
     for (const WeightFormat format : formats()) {
-      std::optional<Candidate> candidate = search(format);
+      std::optional<Candidate> candidate;
+      try {
+        candidate = search(format);
+      } catch (const Error&) {  // another format may still do
+        failure = std::current_exception();
+      }
       if (!candidate) continue;
       const bool is_fine = candidate->is_fine;
       if (!best_ ||
@@ -80,12 +87,8 @@ class FormatSearch {
         best_ = std::move(candidate);
       if (is_fine) break;
     }
-    if (!best_) {
-      throw_failed("weights as small as --weights asks for are not within --max-error",
-                   {.found = fmt::format("a relative error of {:.6g}", least_error_),
-                    .expected = fmt::format("at most {:.6g}", *job_.bound.max_error),
-                    .advice = "Take --weights auto."});
-    }
+    if (!best_ && !std::isfinite(least_error_)) std::rethrow_exception(failure);
+    if (!best_) reject_rounding();
     log::info("the search took as long as {:.2f} encodings", json_["search_cost"].get<double>());
     best_->result.encoded.stages = std::move(stages_);
     best_->result.encoded.flops = flops_;
@@ -105,6 +108,15 @@ class FormatSearch {
     if (job_.storage.weights) return {*job_.storage.weights};
     return {WeightFormat::unorm8, WeightFormat::unorm16, WeightFormat::float16,
             WeightFormat::float32};
+  }
+
+  [[noreturn]] void reject_rounding() const {
+    const bool is_given = job_.storage.weights.has_value();
+    throw_failed(is_given ? "weights as small as --weights asks for are not within --max-error"
+                          : "no encoding found within --max-error whose weights are rounded",
+                 {.found = fmt::format("a relative error of {:.6g}", least_error_),
+                  .expected = fmt::format("at most {:.6g}", *job_.bound.max_error),
+                  .advice = is_given ? "Take --weights auto." : ""});
   }
 
   cpca::Bound bound(WeightFormat format, double reserve) const {
@@ -131,7 +143,6 @@ class FormatSearch {
       cpca::Encoding stored = encoding;
       cpca::convert_weights(format, stored);
       const double exact = error(encoding), rounded = error(stored);
-      least_error_ = std::min(least_error_, rounded);
       const double added = std::max(0.0, rounded * rounded - exact * exact);
       if (is_within(job_, format, stored, input_)) {
         const auto bytes = static_cast<double>(bound.cost.bytes(encoding));
@@ -145,6 +156,11 @@ class FormatSearch {
                             (job_.bound.max_bytes && added <= kNoRounding * kNoRounding);
         return candidate;
       }
+      if (!job_.bound.max_error) {
+        throw_failed("no encoding found that is as small",
+                     {.expected = fmt::format("at most {} bytes", *job_.bound.max_bytes)});
+      }
+      least_error_ = std::min(least_error_, rounded);
       const double share = added / (*job_.bound.max_error * *job_.bound.max_error);
       reserve = std::max(2.0 * reserve, 1.1 * share);
     }
@@ -190,6 +206,7 @@ class FormatSearch {
   const cpca::Size size_;
   std::optional<Candidate> best_;
   std::uint32_t part_ = 0;
+  /// Of those that weights as they are stored took beyond max_error.
   double least_error_ = std::numeric_limits<double>::infinity();
   std::vector<cpca::Stage> stages_;
   double flops_ = 0.0;

@@ -166,11 +166,29 @@ TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
   job_.bound.max_error = 0.0005;
   job_.storage.weights = cpca::WeightFormat::unorm8;
   Report report("test");
-  EXPECT_THROW(run(job_, report), Error);
+  try {
+    run(job_, report);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::failed);
+    EXPECT_EQ(error.details().advice, "Take --weights auto.");
+  }
   EXPECT_FALSE(std::filesystem::exists(job_.output));
   job_.storage.weights.reset();
   run(job_, report);
   EXPECT_LE(stored({}).relative_rmse(), 0.0005);
+}
+
+// The room for rounding takes integers beyond what one vector a cluster reaches.
+TEST_F(CompressedModel, AutoGoesOnWhereOneFormatFindsNothing) {
+  job_.method = "adaptive";
+  job_.max_component_count = 1;
+  job_.bound.max_error = 0.01307;
+  job_.iterations = 1;
+  Report report("test");
+  run(job_, report);
+  EXPECT_EQ(report.json()["weights"], "float");
+  EXPECT_LE(stored({}).relative_rmse(), 0.01307);
 }
 
 TEST_F(CompressedModel, IsTheSameOfASignalOfAnySize) {
