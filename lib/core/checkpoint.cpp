@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,13 @@ struct RecordHead {
   std::uint64_t byte_count, number;
 };
 constexpr std::size_t kHashSize = 32;
+constexpr std::uint32_t kNoStage = 0xffffffff;        // of room that is left
 constexpr std::size_t kPiece = std::size_t{8} << 20;  // what is moved of a mapped array at a time
+
+/// Of the record of a result.
+constexpr std::size_t record_size(std::size_t byte_count) {
+  return sizeof(RecordHead) + byte_count + kHashSize;
+}
 
 std::string make_head(const std::string& key) {
   Hasher hasher;
@@ -136,9 +143,9 @@ void Checkpoint::read_records() {
     if (is_whole(descriptor_, head, offset)) {
       add({head.stage, head.index}, place);
     } else {
-      room_.emplace(place.byte_count, place.offset);
+      free_room(offset, record_size(head.byte_count));
     }
-    end_ = offset = place.offset + place.byte_count + kHashSize;
+    end_ = offset += record_size(head.byte_count);
   }
 }
 
@@ -148,7 +155,42 @@ void Checkpoint::add(Name name, const Place& place) {
   if (is_new) return;
   const bool is_later = place.number > known->second.number;
   const Place older = is_later ? std::exchange(known->second, place) : place;
-  room_.emplace(older.byte_count, older.offset);
+  free_room(older.offset - sizeof(RecordHead), record_size(older.byte_count));
+}
+
+void Checkpoint::free_room(std::size_t offset, std::size_t size) {
+  auto next = room_.lower_bound(offset);
+  if (next != room_.end() && next->first == offset + size) {
+    size += next->second;
+    next = room_.erase(next);
+  }
+  if (next != room_.begin() && std::prev(next)->first + std::prev(next)->second == offset) {
+    std::prev(next)->second += size;
+  } else {
+    room_.emplace(offset, size);
+  }
+}
+
+/// The smallest room that has the size, or one at the end of the file, which becomes longer. False
+/// when the file cannot be written. What is left of a room is a record too, which is not whole; it
+/// counts only once the head of that before it is written.
+bool Checkpoint::take_room(std::size_t size, std::size_t& offset) {
+  auto best = room_.end();
+  for (auto room = room_.begin(); room != room_.end(); ++room) {
+    const bool fits = room->second == size || room->second >= size + record_size(0);
+    if (fits && (best == room_.end() || room->second < best->second)) best = room;
+  }
+  if (best == room_.end() && !room_.empty()) {
+    const auto last = std::prev(room_.end());
+    if (last->first + last->second == end_ && last->second < size) best = last;
+  }
+  offset = best != room_.end() ? best->first : end_;
+  const std::size_t found = best != room_.end() ? best->second : 0;
+  if (best != room_.end()) room_.erase(best);
+  if (found <= size) return true;
+  const RecordHead rest{kNoStage, 0, found - size - record_size(0), 0};
+  room_.emplace(offset + size, found - size);
+  return write_all(descriptor_, &rest, sizeof rest, offset + size);
 }
 
 std::size_t Checkpoint::byte_count(Name name) const {
@@ -173,7 +215,7 @@ void Checkpoint::release(std::uint32_t stage) {
   stage += first_stage_;
   for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
        at = places_.erase(at)) {
-    room_.emplace(at->second.byte_count, at->second.offset);
+    free_room(at->second.offset - sizeof(RecordHead), record_size(at->second.byte_count));
   }
 }
 
@@ -203,10 +245,10 @@ void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
     hasher.add(result.subspan(at, std::min(kPiece, result.size() - at)));
     trim_mapped_arrays();
   }
-  const auto room = room_.find(result.size());
-  const std::size_t offset = room != room_.end() ? room->second : end_ + sizeof head;
-  if (room != room_.end()) room_.erase(room);
-  if (!write_all(descriptor_, &head, sizeof head, offset - sizeof head) ||
+  std::size_t start = 0;
+  const bool has_room = take_room(record_size(result.size()), start);
+  const std::size_t offset = start + sizeof head;
+  if (!has_room || !write_all(descriptor_, &head, sizeof head, start) ||
       !write_all(descriptor_, result.data(), result.size(), offset) ||
       !write_all(descriptor_, hasher.hex().data(), kHashSize, offset + result.size())) {
     give_up(std::strerror(errno));

@@ -1,8 +1,9 @@
 // What a long computation has finished, kept in a file beside its output, so that a run that was
 // killed is continued by the next one. Results are bytes under a name: those of a block that is
-// done, or a state that later ones replace. A result takes the room of one of its size that was
-// replaced or released, never its own, so that a kill at any moment leaves the one or the other;
-// and so the file is as large as the names in use, and one more of each size that is replaced.
+// done, or a state that later ones replace. A result takes the room of others that were
+// replaced or released, never its own, so that a kill at any moment leaves the one or the other.
+// Rooms side by side are one, and the last grows with the file: it is as large as the names in use
+// and one more of each size that is replaced, or three times a state that grows little by little.
 //
 // It holds hashes of itself: results that were only half written, or damaged since, are not there
 // for the reader. Keeping nothing is never an error: where the file cannot be written, or another
@@ -88,6 +89,8 @@ class Checkpoint {
   void open_existing();
   void read_records();
   void add(Name name, const Place& place);
+  void free_room(std::size_t offset, std::size_t size);
+  bool take_room(std::size_t size, std::size_t& offset);
   void begin_file();
   void give_up(const char* why);
 
@@ -102,7 +105,8 @@ class Checkpoint {
   std::size_t end_ = 0;            ///< of the last record
   std::uint64_t last_number_ = 0;
   std::map<Name, Place> places_;
-  std::multimap<std::size_t, std::size_t> room_;  ///< offsets of results no longer needed, by size
+  /// Where records are no longer needed: sizes of rooms by their offsets, none beside another.
+  std::map<std::size_t, std::size_t> room_;
 };
 
 /// Removes the file if it is a checkpoint: when the output is written.

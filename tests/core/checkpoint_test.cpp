@@ -126,6 +126,29 @@ TEST_F(CheckpointTest, AStateMayChangeItsSize) {
   EXPECT_TRUE(has(checkpoint, 1));
 }
 
+TEST_F(CheckpointTest, AStateThatGrowsTakesTheRoomOfThoseBefore) {
+  std::size_t count = 1000;
+  {
+    Checkpoint checkpoint(options_, "key");
+    store(checkpoint, 1);
+    for (int i = 0; i < 30; ++i, count += 100) {
+      store_state(checkpoint, i, count);
+      EXPECT_EQ(state_of(checkpoint), i);
+    }
+  }
+  EXPECT_LT(fs::file_size(path_), 3 * 4 * count);
+  {
+    Checkpoint continued(options_, "key");
+    EXPECT_EQ(state_of(continued), 29);
+    EXPECT_TRUE(has(continued, 1));
+    for (int i = 30; i < 60; ++i, count -= 60) store_state(continued, i, count);
+  }
+  EXPECT_LT(fs::file_size(path_), 3 * 4 * 4000u);
+  const Checkpoint checkpoint(options_, "key");
+  EXPECT_EQ(state_of(checkpoint), 59);
+  EXPECT_TRUE(has(checkpoint, 1));
+}
+
 TEST_F(CheckpointTest, ReleasedRoomIsUsedAgain) {
   write_five();
   const auto size = fs::file_size(path_);
