@@ -16,8 +16,8 @@ constexpr std::size_t kBlock = 512;
 
 std::size_t total(const StorageCost& cost, const Size& size, std::size_t weight_count,
                   std::size_t cluster_count, std::size_t vector_count) {
-  return cost.bytes_of_headers + size.point_count * cost.bytes_per_point + weight_count * cost.bytes_per_weight +
-         cluster_count * cost.bytes_per_cluster +
+  return cost.bytes_of_headers + size.point_count * cost.bytes_per_point +
+         weight_count * cost.bytes_per_weight + cluster_count * cost.bytes_per_cluster +
          (cluster_count + vector_count) * size.dimension * sizeof(float);
 }
 

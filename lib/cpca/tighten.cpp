@@ -25,7 +25,6 @@ constexpr double kSplitShare = 0.5;
 constexpr float kLeastWeight = 1e-2f, kMostWeight = 1e3f, kMore = 0.1f;
 /// Power steps after a classification, and where vectors start from nothing.
 constexpr int kSteps = 1, kFirstSteps = 8;
-constexpr std::size_t kBlock = 1024;
 
 class Tightener {
  public:

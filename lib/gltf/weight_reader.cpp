@@ -10,6 +10,19 @@ namespace prt::gltf {
 
 using cpca::WeightFormat;
 
+namespace {
+
+// Of half floats, whose bits glTF takes for integers.
+std::vector<float> read_halves(const Model& model, int index) {
+  std::vector<float> values;
+  for (const std::uint32_t bits : read_unsigned(model, index)) {
+    values.push_back(cpca::weight_from_half(static_cast<std::uint16_t>(bits)));
+  }
+  return values;
+}
+
+}  // namespace
+
 void WeightReader::read(const tinygltf::Primitive& primitive, const tinygltf::Value& extension,
                         std::size_t first_vertex, const Where& where) {
   cpca::Encoding& encoding = transfer_.encoding;
@@ -20,15 +33,6 @@ void WeightReader::read(const tinygltf::Primitive& primitive, const tinygltf::Va
   } else {
     read_packed(extension, first_vertex, where);
   }
-}
-
-// Of half floats, whose bits glTF takes for integers.
-std::vector<float> read_halves(const Model& model, int index) {
-  std::vector<float> values;
-  for (const std::uint32_t bits : read_unsigned(model, index)) {
-    values.push_back(cpca::weight_from_half(static_cast<std::uint16_t>(bits)));
-  }
-  return values;
 }
 
 // Finite floats, or normalised integers as shares of 1.
