@@ -84,7 +84,9 @@ cpca::Storage store(const Job& job, const Input& input, Result& result, Report& 
   const cpca::Encoding plain = encoding;
   cpca::Storage storage = prepare();
   // Moves stretch the ranges of weights, and give points of adaptive encodings more of them.
-  if (is_within(job, *result.weights, encoding, input)) return storage;
+  const bool is_left_out = !is_within(job, *result.weights, encoding, input);
+  report.json()["coherence_left_out"] = is_left_out;
+  if (!is_left_out) return storage;
   log::info("coherence would leave the bound, and is left out");
   encoding = plain;
   options.is_incoherent = true;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "compress/encode.h"
 #include "compress/signal.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -83,6 +84,22 @@ TEST_F(CompressedModel, KeepsToTheBoundAsWritten) {
     }
   }
   EXPECT_GT(moved_count, 0);
+}
+
+TEST_F(CompressedModel, TellsWhetherCoherenceIsLeftOut) {
+  job_.cluster_count = 12;
+  job_.component_count = 3;
+  job_.storage.weights = cpca::WeightFormat::unorm16;
+  Report report("test");
+  const Input input = load(job_, report);
+  const Result encoded = encode(job_, input, report);
+  for (const bool is_left_out : {true, false}) {
+    job_.bound.max_error = is_left_out ? 1e-6 : 0.5;
+    Result result = encoded;
+    const cpca::Storage storage = store(job_, input, result, report);
+    EXPECT_EQ(report.json()["coherence_left_out"], is_left_out);
+    EXPECT_EQ(storage.coherence.has_value(), !is_left_out);
+  }
 }
 
 TEST_F(CompressedModel, KeepsToTheBoundByItsWeights) {
