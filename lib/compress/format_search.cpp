@@ -85,7 +85,9 @@ class FormatSearch {
       if (!best_ ||
           std::tie(candidate->worth, candidate->next) < std::tie(best_->worth, best_->next))
         best_ = std::move(candidate);
-      if (is_fine) break;
+      // In as many bytes static encodings of as fine weights differ by luck: one more is taken.
+      const bool is_lucky = job_.method == "static" && job_.bound.max_bytes;
+      if (is_fine && !(is_lucky && format == WeightFormat::unorm8)) break;
     }
     if (!best_ && !std::isfinite(least_error_)) std::rethrow_exception(failure);
     if (!best_) reject_rounding();

@@ -162,7 +162,7 @@ TEST_F(CompressedModel, AutoIsNoWorseWithinABoundThanAnyFormat) {
       }
     }
   };
-  for (const char* method : {"iterative", "adaptive"}) {
+  for (const char* method : {"static", "iterative", "adaptive"}) {
     job_.method = method;
     for (const cpca::Norm norm : {cpca::Norm::rmse, cpca::Norm::maximum}) {
       for (const double max_error : {0.01, 0.002}) {
