@@ -1,7 +1,5 @@
 #include "cpca/search.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -9,14 +7,13 @@
 #include <numeric>
 #include <optional>
 
-#include "core/error.h"
-#include "core/log.h"
 #include "core/stopwatch.h"
 #include "cpca/error_limits.h"
 #include "cpca/fit.h"
 #include "cpca/kept.h"
 #include "cpca/search_resize.h"
 #include "cpca/search_survey.h"
+#include "cpca/search_trial.h"
 #include "cpca/tighten.h"
 
 namespace prt::cpca {
@@ -69,7 +66,7 @@ class Search {
       make(*next);
       learn();
     }
-    if (!best_) reject();
+    if (!best_) reject(bound_, trials_);
     if (best_ != last_) fit_weights(signal_, best_->encoded.encoding);
     last_.reset();
     Found found{.encoded = std::move(best_->encoded),
@@ -204,10 +201,7 @@ class Search {
   void learn() {
     const Trial& trial = last_->trial;
     trials_.push_back(trial);
-    log::info("{} clusters, {} components{}: relative error {:.4g}, {} bytes, {:.2f} s{}",
-              trial.choice.cluster_count, trial.choice.component_count,
-              trial.is_warm ? " from the last" : "", trial.error, trial.bytes, trial.seconds,
-              trial.is_resumed ? " of an interrupted run" : "");
+    log_trial(trial);
     flops_ += last_->encoded.flops;
     const auto& stages = last_->encoded.stages;
     stages_.insert(stages_.end(), stages.begin(), stages.end());
@@ -265,20 +259,6 @@ class Search {
     while (choice.cluster_count < most && bound_.cost.bytes(size_, choice) < best_->trial.bytes)
       ++choice.cluster_count;
     return choice.cluster_count;
-  }
-
-  [[noreturn]] void reject() const {
-    const auto least =
-        std::min_element(trials_.begin(), trials_.end(),
-                         [&](const Trial& a, const Trial& b) { return a.error < b.error; });
-    if (bound_.max_error) {
-      throw_failed("no encoding found within the error",
-                   {.found = fmt::format("a relative error of {:.4g}", least->error),
-                    .expected = fmt::format("at most {:.4g}", *bound_.max_error)});
-    }
-    throw_failed("no encoding found that is as small",
-                 {.expected = fmt::format("at most {} bytes", *bound_.max_bytes),
-                  .advice = "Take --method iterative."});
   }
 
   const Bound bound_;
