@@ -83,15 +83,16 @@ class Tightener {
   Encoding encoding() const {
     const Subspaces& subspaces = clusterer_.subspaces();
     const std::size_t count = component_count_, cluster_count = wanted_.size();
-    Encoding encoding{.point_count = shares_.size(),
-                      .dimension = static_cast<int>(n_),
-                      .cluster_count = static_cast<int>(cluster_count),
-                      .component_count = static_cast<int>(count),
-                      .means = std::vector<float>(cluster_count * n_),
-                      .bases = std::vector<float>(cluster_count * count * n_),
-                      .component_counts = is_adaptive_ ? subspaces.used : std::vector<std::uint32_t>(),
-                      .cluster_of_point = clusterer_.labels(),
-                      .weights = {}};
+    Encoding encoding{
+        .point_count = shares_.size(),
+        .dimension = static_cast<int>(n_),
+        .cluster_count = static_cast<int>(cluster_count),
+        .component_count = static_cast<int>(count),
+        .means = std::vector<float>(cluster_count * n_),
+        .bases = std::vector<float>(cluster_count * count * n_),
+        .component_counts = is_adaptive_ ? subspaces.used : std::vector<std::uint32_t>(),
+        .cluster_of_point = clusterer_.labels(),
+        .weights = {}};
     for (std::size_t k = 0; k < cluster_count; ++k) {
       std::copy_n(subspaces.mean(k), n_, &encoding.means[k * n_]);
       for (std::uint32_t v = 0; v < subspaces.used[k]; ++v) {
