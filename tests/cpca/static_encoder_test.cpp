@@ -207,9 +207,10 @@ TEST(StaticEncoder, RefusesOptionsThatDoNotFit) {
   const auto usage = ErrorKind::usage;
   EXPECT_EQ(message_of(signal, 4, {.cluster_count = 0}, usage),
             "number of clusters: found 0, expected at least 1");
-  EXPECT_EQ(message_of(signal, 4, {.cluster_count = 11, .component_count = 1}, usage),
-            "more clusters than points: found 11, expected at most 10 clusters. Ask for fewer with "
-            "--clusters.");
+  EXPECT_EQ(
+      message_of(signal, 4, {.cluster_count = 11, .component_count = 1}, usage),
+      "more clusters than points: found 11, expected at most 10, one a point. Ask for fewer with "
+      "--clusters.");
   EXPECT_EQ(message_of(signal, 4, {.cluster_count = 2, .component_count = 5}, usage),
             "more components than coefficients: found 5, expected at most 4. Ask for fewer with "
             "--components.");
