@@ -14,7 +14,7 @@ struct ImportOptions {
   mesh::PrepareOptions prepare;
   /// Linear; of what has no material. None: white, but glTF keeps its own default.
   std::optional<Vec3> base_color;
-  float metres_per_unit = 1.0f;    ///< mesh files only: glTF has its unit and axes
+  float metres_per_unit = 1.0f;  ///< mesh files only: glTF has its unit and axes
   mesh::UpAxis up = mesh::UpAxis::y;
   Limits limits;
 };

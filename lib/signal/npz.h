@@ -25,7 +25,8 @@ Array make_array(std::string name, std::string type, std::vector<std::size_t> sh
 /// Bytes of a .npy file in front of its values.
 std::string npy_header(const std::string& type, std::span<const std::size_t> shape);
 
-/// Bytes of the file that write_npz makes of the arrays. Beside their data they depend on the names.
+/// Bytes of the file that write_npz makes of the arrays. Beside their data they depend on the
+/// names.
 std::size_t npz_bytes(std::span<const Array> arrays);
 
 /// Atomic; the same arrays give the same bytes. Sizes are those of ZIP64, so that none is too
