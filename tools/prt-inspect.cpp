@@ -17,9 +17,9 @@ using namespace prt;
 namespace fs = std::filesystem;
 
 struct Options {
-  fs::path file, transfer, plots, mask, noise, heatmap;
-  std::vector<fs::path> compare;
-  double heatmap_max = 0.0;
+  fs::path file, transfer, plots;
+  std::vector<fs::path> compare;  ///< image, reference
+  inspect::ComparisonFiles comparison;
   bool json = false, hemisphere = false;
 };
 
@@ -38,11 +38,14 @@ void add_options(cli::Options& app, Options& options) {
   app.add_option("--compare", options.compare, "Two images, the second being the reference")
       ->values(2)
       ->group("Comparison");
-  app.add_option("--mask", options.mask, "Image: count only pixels above 0.5")->group("Comparison");
-  app.add_option("--noise", options.noise, "Standard error of the reference")->group("Comparison");
-  app.add_option("--heatmap", options.heatmap, "Write a picture of the difference (.png, .exr)")
+  app.add_option("--mask", options.comparison.mask, "Image: count only pixels above 0.5")
       ->group("Comparison");
-  app.add_option("--heatmap-max", options.heatmap_max,
+  app.add_option("--noise", options.comparison.noise, "Standard error of the reference")
+      ->group("Comparison");
+  app.add_option("--heatmap", options.comparison.heatmap,
+                 "Write a picture of the difference (.png, .exr)")
+      ->group("Comparison");
+  app.add_option("--heatmap-max", options.comparison.heatmap_max,
                  "Radiance at the red end of its scale; 0: the 99th percentile")
       ->check(cli::at_least_zero())
       ->group("Comparison");
@@ -55,18 +58,19 @@ void check_usage(const Options& options) {
   }
   if (!options.transfer.empty() && options.file.empty()) reject("--transfer needs FILE");
   if (!options.plots.empty() && options.file.empty()) reject("--plots needs FILE");
-  const bool of_comparison =
-      !options.mask.empty() || !options.noise.empty() || !options.heatmap.empty();
+  const bool of_comparison = !options.comparison.mask.empty() ||
+                             !options.comparison.noise.empty() ||
+                             !options.comparison.heatmap.empty();
   if (of_comparison && options.compare.empty()) {
     reject("--mask, --noise and --heatmap need --compare");
   }
-  if (options.heatmap_max > 0.0 && options.heatmap.empty()) {
+  if (options.comparison.heatmap_max > 0.0 && options.comparison.heatmap.empty()) {
     reject("--heatmap-max needs --heatmap");
   }
 }
 
 void check_files(Options& options, const cli::CommonOptions& common) {
-  std::vector<cli::Output> outputs{{options.heatmap, {".png", ".exr"}, {}}};
+  std::vector<cli::Output> outputs{{options.comparison.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
     if (options.transfer.empty()) options.transfer = inspect::transfer_beside(options.file);
     check_output_folder(options.plots);
@@ -74,7 +78,8 @@ void check_files(Options& options, const cli::CommonOptions& common) {
       outputs.push_back({file, {file.extension().string()}, {}});
     }
   }
-  std::vector<fs::path> inputs{options.file, options.transfer, options.mask, options.noise};
+  std::vector<fs::path> inputs{options.file, options.transfer, options.comparison.mask,
+                               options.comparison.noise};
   inputs.insert(inputs.end(), options.compare.begin(), options.compare.end());
   cli::check_paths(inputs, outputs, common);
 }
@@ -102,27 +107,6 @@ bool inspect_one(const Options& options, bool no_clobber, Report& report, inspec
   return true;
 }
 
-void compare_images(const Options& options, bool no_clobber, Report& report, inspect::Json& json) {
-  const StageTimer timer(report, "compare");
-  const auto read = [&](const fs::path& path) {
-    report.add_input(path);
-    return image::read_image(path);
-  };
-  inspect::ComparisonInput input{read(options.compare[0]), read(options.compare[1]), {}, {}};
-  if (!options.mask.empty()) input.mask = read(options.mask);
-  if (!options.noise.empty()) input.noise = read(options.noise);
-  const inspect::Comparison comparison = compare(input);
-  json["image"] = options.compare[0].string();
-  json["reference"] = options.compare[1].string();
-  json["comparison"] = comparison.json;
-  if (options.heatmap.empty()) return;
-  const double scale = options.heatmap_max > 0.0
-                           ? options.heatmap_max
-                           : comparison.json["difference"]["p99"].get<double>();
-  image::write_image(options.heatmap, heatmap(comparison, scale), no_clobber);
-  report.add_output(options.heatmap);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -139,7 +123,11 @@ int main(int argc, char** argv) {
     inspect::Json json = inspect::Json::object();
     if (options.hemisphere) json["hemisphere"] = inspect::hemisphere_table();
     if (!options.file.empty()) valid = inspect_one(options, no_clobber, report, json);
-    if (!options.compare.empty()) compare_images(options, no_clobber, report, json);
+    if (!options.compare.empty()) {
+      options.comparison.image = options.compare[0];
+      options.comparison.reference = options.compare[1];
+      inspect::compare_files(options.comparison, no_clobber, report, json);
+    }
     fmt::print("{}\n", options.json ? json_text(json, 2) : inspect::to_text(json));
     report.json()["result"] = json;
   });

@@ -7,12 +7,12 @@
 #include "cli/tool.h"
 #include "core/error.h"
 #include "core/exit_rows.h"
+#include "core/file.h"
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "ray/engine.h"
-#include "transfer/diffuse.h"
+#include "transfer/bake.h"
 #include "transfer/figures.h"
-#include "transfer/matrix_job.h"
 
 namespace {
 
@@ -89,15 +89,6 @@ mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
   return gltf::Document::load(path).scene();
 }
 
-signal::TransferSignal bake_diffuse(const Options& options, const mesh::Scene& scene,
-                                    bool no_clobber, transfer::DiffuseStats& stats,
-                                    Report& report) {
-  signal::TransferSignal signal = transfer::compute_diffuse(scene, options.diffuse, stats);
-  const StageTimer timer(report, "save");
-  signal::write_transfer(options.output, signal, no_clobber);
-  return signal;
-}
-
 transfer::MatrixOptions matrix_options(const Options& options) {
   using Projection = sh::HemisphereProjection;
   const bool zero = options.projection == "zero-hemisphere";
@@ -123,14 +114,14 @@ void bake(Options& options, const cli::CommonOptions& common, Report& report) {
   options.diffuse.shadowed = !options.unshadowed;
   options.diffuse.seed = common.seed;
   options.diffuse.checkpoint = cli::checkpoint_beside(options.output);
-  const std::filesystem::path folder = options.output.parent_path();
-  options.diffuse.scratch.folder = folder.empty() ? "." : folder;
+  options.diffuse.scratch.folder = folder_of(options.output);
   transfer::DiffuseStats stats;
   const signal::TransferSignal signal =
       options.mode == "matrix"
           ? transfer::bake_matrices(scene, matrix_options(options), options.output,
                                     common.no_clobber, stats, report)
-          : bake_diffuse(options, scene, common.no_clobber, stats, report);
+          : transfer::bake_diffuse(scene, options.diffuse, options.output, common.no_clobber, stats,
+                                   report);
   remove_checkpoint(options.diffuse.checkpoint.path);
   transfer::report_figures(report, stats, signal);
   report.add_output(options.output);

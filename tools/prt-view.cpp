@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
     options.debug = tool.common().verbose;
     prt::runtime::Viewer viewer(options);
     report.json()["start_seconds"] = viewer.run();
+    if (tool.common().report.empty()) return;  // files may have gone since they were opened
     for (const auto& input : inputs) {
       if (!input.empty()) report.add_input(input);
     }

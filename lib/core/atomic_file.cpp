@@ -15,6 +15,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/file.h"
 
 namespace prt {
 
@@ -180,7 +181,7 @@ void check_output(const std::filesystem::path& path, bool no_clobber) {
                  {.file = path.string(), .advice = "Give another name."});
   }
   const std::filesystem::path target = resolved(path);
-  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  const std::filesystem::path folder = folder_of(target);
   if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) {
     throw_failed("output folder does not exist",
                  {.file = path.string(), .advice = "Create " + folder.string() + " first."});

@@ -56,4 +56,8 @@ std::string lower_extension(const std::filesystem::path& path) {
   return text;
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
 }  // namespace prt

@@ -23,4 +23,7 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t limit 
 /// The ending of the file's name with its dot, ASCII letters in lower case: ".exr" for a.EXR.
 std::string lower_extension(const std::filesystem::path& path);
 
+/// The folder that the file is in; "." of a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
 }  // namespace prt

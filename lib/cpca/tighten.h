@@ -17,10 +17,9 @@
 namespace prt::cpca {
 
 /// Goes on from an encoding until every point's squared error, times its weight of the options, is
-/// at most `limit` > 0, or there would be more than `most_clusters`, or
-/// after 400 iterations. New clusters have as many
-/// vectors as those they were part of, as far as their points have so many. Of the options only
-/// weights and checkpoint count. The same result for any number of threads.
+/// at most `limit` > 0, or there would be more than `most_clusters`, or after 400 iterations. New
+/// clusters have as many vectors as those they were part of, as far as their points have so many.
+/// Of the options only weights and checkpoint count. The same result for any number of threads.
 void tighten(std::span<const float> signal, double limit, int most_clusters, const Options& options,
              Encoded& encoded);
 

@@ -141,4 +141,24 @@ image::Image heatmap(const Comparison& comparison, double scale) {
   return canvas.linear();
 }
 
+void compare_files(const ComparisonFiles& files, bool no_clobber, Report& report, Json& json) {
+  const StageTimer timer(report, "compare");
+  const auto read = [&](const std::filesystem::path& path) {
+    report.add_input(path);
+    return image::read_image(path);
+  };
+  ComparisonInput input{read(files.image), read(files.reference), {}, {}};
+  if (!files.mask.empty()) input.mask = read(files.mask);
+  if (!files.noise.empty()) input.noise = read(files.noise);
+  const Comparison comparison = compare(input);
+  json["image"] = files.image.string();
+  json["reference"] = files.reference.string();
+  json["comparison"] = comparison.json;
+  if (files.heatmap.empty()) return;
+  const double scale = files.heatmap_max > 0.0 ? files.heatmap_max
+                                               : comparison.json["difference"]["p99"].get<double>();
+  image::write_image(files.heatmap, heatmap(comparison, scale), no_clobber);
+  report.add_output(files.heatmap);
+}
+
 }  // namespace prt::inspect

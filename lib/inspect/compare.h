@@ -1,8 +1,10 @@
 // One picture against another, usually a drawn one against the path tracer's.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
+#include "core/report.h"
 #include "image/image.h"
 #include "inspect/inspection.h"
 
@@ -27,5 +29,16 @@ Comparison compare(const ComparisonInput& input);
 /// The difference in the linear blue-cyan-green-yellow-red scale of [Sloan03] Figure 4, 0 to
 /// `scale` (in radiance), with a legend; grey where nothing was counted.
 image::Image heatmap(const Comparison& comparison, double scale);
+
+/// Empty: none.
+struct ComparisonFiles {
+  std::filesystem::path image, reference, mask, noise;
+  std::filesystem::path heatmap;  ///< to be written
+  double heatmap_max = 0.0;       ///< its scale; 0: the 99th percentile of the difference
+};
+
+/// Compares files, and adds image, reference and comparison to `json`; the stage, inputs and the
+/// output to the report. Throws what compare, read_image and write_image throw.
+void compare_files(const ComparisonFiles& files, bool no_clobber, Report& report, Json& json);
 
 }  // namespace prt::inspect

@@ -1,10 +1,19 @@
-#include "transfer/matrix_job.h"
+#include "transfer/bake.h"
 
 #include "core/log.h"
 #include "core/progress.h"
 #include "core/stopwatch.h"
 
 namespace prt::transfer {
+
+signal::TransferSignal bake_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
+                                    const std::filesystem::path& output, bool no_clobber,
+                                    DiffuseStats& stats, Report& report) {
+  signal::TransferSignal signal = compute_diffuse(scene, options, stats);
+  const StageTimer timer(report, "save");
+  signal::write_transfer(output, signal, no_clobber);
+  return signal;
+}
 
 signal::TransferSignal bake_matrices(const mesh::Scene& scene, const MatrixOptions& options,
                                      const std::filesystem::path& output, bool no_clobber,

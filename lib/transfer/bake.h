@@ -1,4 +1,4 @@
-// What prt-transfer --mode matrix does: matrices into a file as they are made.
+// What prt-transfer does: vectors into a file, or matrices as they are made.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,12 @@
 #include "transfer/matrix.h"
 
 namespace prt::transfer {
+
+/// Writes the transfer file and returns the transfer. Adds the stage "save" to the report. Throws
+/// what compute_diffuse and signal::write_transfer throw.
+signal::TransferSignal bake_diffuse(const mesh::Scene& scene, const DiffuseOptions& options,
+                                    const std::filesystem::path& output, bool no_clobber,
+                                    DiffuseStats& stats, Report& report);
 
 /// Writes the transfer file and returns its header. Adds the stages "brdf" and "save" and the keys
 /// of matrices of docs/tools/prt-transfer.md to the report. Throws what MatrixTransfer and
