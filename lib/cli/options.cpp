@@ -15,27 +15,51 @@ namespace prt::cli {
 
 namespace {
 
-/// CLI11's own name the largest number of all in their message.
-Validator number_check(const char* type, bool (*holds)(double), const char* expected) {
+/// CLI11's own say C++'s names of limits and types. `type` is what --help shows.
+Validator check_of(const std::string& type, const std::function<bool(const std::string&)>& holds,
+                   const std::string& expected) {
   return std::make_shared<CLI::Validator>(
       [holds, expected](const std::string& value) {
-        double number = 0.0;
-        const bool good = CLI::detail::lexical_cast(value, number) && holds(number);
-        return good ? std::string() : fmt::format("expected {}, found {}", expected, value);
+        return holds(value) ? "" : fmt::format("expected {}, found {}", expected, value);
       },
       type);
 }
 
+template <class Number>
+Validator number_check(const std::string& type, const std::function<bool(Number)>& holds,
+                       const std::string& expected) {
+  const auto is_good = [holds](const std::string& value) {
+    Number number{};
+    return CLI::detail::lexical_cast(value, number) && holds(number);
+  };
+  return check_of(type, is_good, expected);
+}
+
+template <class Number>
+Validator range_of(const char* type, const char* number, Number low, Number high) {
+  return number_check<Number>(
+      fmt::format("{} in [{} - {}]", type, low, high),
+      [low, high](Number x) { return low <= x && x <= high; },
+      fmt::format("{} from {} to {}", number, low, high));
+}
+
+void check_count(const std::string& name, std::span<const float> values, std::size_t count) {
+  if (!values.empty() && values.size() % count == 0) return;
+  throw Error(ErrorKind::usage, name + ": wrong count",
+              {.found = fmt::format("{}", fmt::join(values, ",")),
+               .expected = fmt::format("{} values", count)});
+}
+
 }  // namespace
 
-Validator Range(int low, int high) { return std::make_shared<CLI::Range>(low, high); }
-Validator Range(double low, double high) { return std::make_shared<CLI::Range>(low, high); }
+Validator Range(int low, int high) { return range_of("INT", "a whole number", low, high); }
+Validator Range(double low, double high) { return range_of("FLOAT", "a number", low, high); }
 Validator at_least_zero() {
-  return number_check(
+  return number_check<double>(
       "NONNEGATIVE", [](double x) { return x >= 0.0; }, "a number from 0 up");
 }
 Validator above_zero() {
-  return number_check(
+  return number_check<double>(
       "POSITIVE", [](double x) { return x > 0.0; }, "a number above 0");
 }
 Validator accepted_by(const std::function<void(const std::string&)>& function) {
@@ -51,7 +75,10 @@ Validator accepted_by(const std::function<void(const std::string&)>& function) {
       "");
 }
 Validator IsMember(const std::vector<std::string>& names) {
-  return std::make_shared<CLI::IsMember>(names);
+  return check_of(
+      fmt::format("{{{}}}", fmt::join(names, ",")),
+      [names](const std::string& value) { return std::ranges::count(names, value) > 0; },
+      fmt::format("{}{}", names.size() > 1 ? "one of " : "", fmt::join(names, ", ")));
 }
 
 Option* Option::required() {
@@ -137,7 +164,7 @@ Option* Options::add_vector(const std::string& name, const std::function<void(co
     for (const float x : v) {
       if (!std::isfinite(x)) throw Error(ErrorKind::usage, name + ": not a finite number");
     }
-    if (v.size() != 3) throw Error(ErrorKind::usage, name + ": expected X,Y,Z");
+    check_count(name, v, 3);
     set(Vec3(v[0], v[1], v[2]));
   };
   return keep(app_.add_option_function<std::vector<float>>(name, set_values, description))
@@ -151,11 +178,7 @@ Option* Options::add_repeated_numbers(const std::string& name, int count,
   const auto set_values = [name, set, count](const std::vector<float>& values) {
     const std::span<const float> all = values;
     const auto step = static_cast<std::size_t>(count);
-    if (all.size() % step != 0) {
-      throw Error(ErrorKind::usage, name + ": wrong count",
-                  {.found = fmt::format("{}", fmt::join(values, ",")),
-                   .expected = fmt::format("{} values", count)});
-    }
+    check_count(name, all, step);
     try {
       for (std::size_t first = 0; first < all.size(); first += step) set(all.subspan(first, step));
     } catch (const Error& error) {

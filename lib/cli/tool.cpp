@@ -33,7 +33,7 @@ void apply(const CommonOptions& options) {
                                    : log::Level::info);
 }
 
-/// CLI11's ranges let NaN pass, and most options are floats, which 1e40 would make infinite.
+/// Most options are floats, which 1e40 would make infinite, and not all have a range.
 void check_finite(const CLI::Option& option) {
   for (const std::string& value : option.results()) {
     if (std::isfinite(std::strtof(value.c_str(), nullptr))) continue;
@@ -52,6 +52,18 @@ void check_unsigned(const CLI::Option& option) {
   }
 }
 
+/// "Could not convert: NAME = VALUE", by what the option takes.
+std::string conversion_message(const CLI::App& app, const std::string& what) {
+  const std::size_t colon = what.find(": "), equals = what.find(" = ");
+  const std::string name = what.substr(colon + 2, equals - colon - 2);
+  const std::string type = app.get_option(name)->get_type_name();
+  return fmt::format("{}: expected {}, found {}", name,
+                     type == "FLOAT"                   ? "a number"
+                     : type == "INT" || type == "UINT" ? "a whole number"
+                                                       : "numbers " + type,
+                     what.substr(equals + 3));
+}
+
 /// CLI11 calls a missing value by the types of its checks, and lists unknown arguments backwards.
 std::string message_of(const CLI::App& app, const CLI::Error& error) {
   const std::string what = error.what();
@@ -61,6 +73,7 @@ std::string message_of(const CLI::App& app, const CLI::Error& error) {
   if (error.get_name() == "ArgumentMismatch" && what.ends_with(" missing")) {
     return what.substr(0, what.find(':')) + ": a value is missing";
   }
+  if (what.starts_with("Could not convert: ")) return conversion_message(app, what);
   return what;
 }
 

@@ -114,6 +114,27 @@ class Options(ToolTest):
             self.wrong("WIDTHxHEIGHT, each from 1 to 16384", "prt-render", self.quad, "-o",
                        self.folder / "a.png", "--size", size)
 
+    def test_numbers_that_are_none_or_too_few(self):
+        glb, png, light = (self.folder / name for name in ("a.glb", "a.png", "a.json"))
+        compress = ("prt-compress", self.quad, self.quad, "-o", glb)
+        self.wrong("--max-error: expected a number, found 2%", *compress, "--max-error", "2%")
+        self.wrong("--max-bytes: expected a whole number, found 2M", *compress, "--max-bytes", "2M")
+        self.wrong("--threads: expected a whole number from 0 to 1024, found 1.5", *compress,
+                   "--threads", 1.5)
+        self.wrong("--method: expected one of iterative, .*, found kmeans", *compress, "--method",
+                   "kmeans")
+        constant = ("prt-light", "--constant", "1,1,1", "-o", light)
+        self.wrong("--rotate: wrong count: found 90, expected 3 values", *constant, "--rotate", 90)
+        self.wrong("--rotate: expected a number from -36000 to 36000, found x", *constant,
+                   "--rotate", "90,0,x")
+        self.wrong("--constant: expected numbers R,G,B, found 1,1,x", "prt-light", "--constant",
+                   "1,1,x", "-o", light)
+        render = ("prt-render", self.quad, "-o", png)
+        self.wrong("--eye: wrong count: found 90, expected 3 values", *render, "--eye", 90)
+        self.wrong("--eye: expected numbers X,Y,Z, found 1,2,z", *render, "--eye", "1,2,z")
+        self.wrong("--point-light: expected numbers X,Y,Z,R,G,B, found 0,1,0,1,1,x", *render,
+                   "--point-light", "0,1,0,1,1,x")
+
     def test_empty_values(self):
         self.wrong("--output: empty", "prt-import", self.source, "-o", "")
         self.wrong("input: empty", "prt-import", "", "-o", self.folder / "a.glb")
