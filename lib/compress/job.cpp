@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "compress/arrays.h"
 #include "compress/encode.h"
 #include "compress/input.h"
@@ -21,6 +23,18 @@ std::size_t stored_numbers(const cpca::Encoding& encoding) {
   return (cpca::storage_bytes(encoding) - encoding.point_count * index_bytes) / sizeof(float);
 }
 
+/// What `component_count`, that of the cluster with most, does not say of adaptive encodings.
+void report_components(const cpca::Encoding& encoding, nlohmann::ordered_json& json) {
+  int least = encoding.component_count;
+  for (int k = 0; k < encoding.cluster_count; ++k)
+    least = std::min(least, encoding.component_count_of(k));
+  double weight_count = 0;
+  for (const std::uint32_t k : encoding.cluster_of_point)
+    weight_count += encoding.component_count_of(static_cast<int>(k));
+  json["least_component_count"] = least;
+  json["mean_component_count"] = weight_count / static_cast<double>(encoding.point_count);
+}
+
 /// As the file stores it: what the encoder tells is of plain floats.
 void set_bytes(std::size_t bytes, nlohmann::ordered_json& json) {
   json["bytes"] = bytes;
@@ -38,6 +52,7 @@ void report_encoding(const Job& job, const Input& input, const cpca::Encoded& en
   }
   auto& json = report.json();
   json.update(cpca::to_json(encoded, input.transfer.values, groups));
+  report_components(encoded.encoding, json);
   json["blas"] = linalg::blas_description();
   const Errors errors = measure(encoded.encoding, input.transfer.values, input.weights());
   const Errors plain{.squared = json["squared_error"],

@@ -59,6 +59,17 @@ class Signal(ToolTest):
         self.assertLess(errors[1], 0.9 * errors[0])
         self.assertLess(errors[2], errors[1])
 
+    def test_clusters_of_different_size_are_told_by_fewest_most_and_average_vectors(self):
+        for method, pattern in (("static", "in 20 clusters of 4 components: "),
+                                ("adaptive", "in 20 clusters of {} to {} components, {:.1f} a point: ")):
+            result = self.done("prt-compress", "--signal", self.signal, "--report", self.report,
+                               "--method", method, "--clusters", 20, "--components", 4)
+            report = self.load(self.report)
+            counts = [report[f"{least}component_count"] for least in ("least_", "", "mean_")]
+            self.assertIn(pattern.format(*counts), result.stderr)
+            self.assertEqual(method == "static", counts[0] == counts[1] == counts[2])
+            self.assertLessEqual(counts[2], 4 + 1e-9)
+
     def test_report_tells_the_error_after_each_iteration(self):
         report = self.compress("--clusters", 20, "--components", 2, "--iterations", 5)
         self.assertEqual([level["component_count"] for level in report["iterations"]], [0, 1, 2])
