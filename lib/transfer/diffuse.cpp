@@ -16,6 +16,7 @@
 #include "transfer/buried.h"
 #include "transfer/clamped_cosine.h"
 #include "transfer/header.h"
+#include "transfer/interpolation_error.h"
 #include "transfer/limits.h"
 #include "transfer/reflection.h"
 #include "transfer/resume.h"
@@ -37,16 +38,6 @@ std::string checkpoint_key(const mesh::Scene& scene, const DiffuseOptions& o) {
   return fmt::format("diffuse {} {} {} {} {} {} {} {} {} {}", mesh::scene_hash(scene), o.band_count,
                      o.ray_count, o.bounce_count, o.bounce_ray_count, o.shadowed,
                      static_cast<int>(o.channels), o.seed, o.closed_form, o.bounce_bytes);
-}
-
-/// Basis functions at all directions, a padded row a direction.
-std::vector<float> basis_rows(int band_count, const Directions& directions) {
-  const auto count = sh::row_size(band_count);
-  std::vector<float> rows(directions.count() * padded(count));
-  for (std::size_t d = 0; d < directions.count(); ++d) {
-    sh::evaluate(band_count, directions[d], {&rows[d * padded(count)], count});
-  }
-  return rows;
 }
 
 /// One bake: the signal's rows hold irradiance, bounces added up, until the last step multiplies
@@ -83,6 +74,7 @@ class DiffuseBake {
     if (options_.bounce_count > 0) bounce(repair, std::move(blocked));
     multiply_albedo();
     count_buried(repair);
+    if (options_.shadowed) measure_interpolation(index_, stats_);
     return std::move(signal_);
   }
 

@@ -20,6 +20,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,11 @@ struct DiffuseStats {
     std::size_t vertex_count = 0;
     std::size_t triangle_count = 0;
     std::size_t buried_vertex_count = 0;
+    std::optional<double> interpolation_error{};  ///< transfer/interpolation_error.h; with shadows
+    double longest_edge = 0.0;                    ///< metres; with interpolation_error
+
+    /// For transfer at its vertices.
+    bool is_coarse() const { return interpolation_error.value_or(0.0) > 0.1; }
   };
   std::vector<Primitive> primitives;
   std::size_t buried_vertex_count = 0;      ///< detected
@@ -64,6 +70,7 @@ struct DiffuseStats {
   double rays_per_second = 0.0;             ///< of the shadow pass
   double build_seconds = 0.0;               ///< the shadow tree, the order of vertices
   double trace_seconds = 0.0;               ///< the shadow pass
+  double interpolation_seconds = 0.0;       ///< interpolation_error
   double bounce_seconds = 0.0;              ///< rays of the bounces, and gathering
   double matrix_seconds = 0.0;              ///< matrices without bounces
 };

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "core/random.h"
+#include "sh/basis.h"
+#include "transfer/kernels.h"
 
 namespace prt::transfer {
 
@@ -82,6 +84,14 @@ Directions make_directions(std::size_t count, std::uint64_t seed) {
   }
   directions.beams = ray::make_beams({directions.x, directions.y, directions.z});
   return directions;
+}
+
+std::vector<float> basis_rows(int band_count, const Directions& directions) {
+  const std::size_t count = sh::row_size(band_count);
+  std::vector<float> rows(directions.count() * padded(count));
+  for (std::size_t d = 0; d < directions.count(); ++d)
+    sh::evaluate(band_count, directions[d], {&rows[d * padded(count)], count});
+  return rows;
 }
 
 }  // namespace prt::transfer

@@ -24,4 +24,8 @@ struct Directions {
 
 Directions make_directions(std::size_t count, std::uint64_t seed);
 
+/// SH basis functions at all directions, a row of padded(band_count²) floats a direction, as
+/// add_weighted_rows takes them (transfer/kernels.h).
+std::vector<float> basis_rows(int band_count, const Directions& directions);
+
 }  // namespace prt::transfer

@@ -1,8 +1,34 @@
 #include "transfer/figures.h"
 
+#include <limits>
+#include <vector>
+
 #include "core/log.h"
 
 namespace prt::transfer {
+
+namespace {
+
+/// Splitting is for all meshes of a file: as the one that needs it most asks for.
+void warn_of_coarse_meshes(const std::vector<DiffuseStats::Primitive>& primitives) {
+  constexpr double kPieces = 8.0;  // of the longest edge
+  std::size_t coarse_count = 0;
+  const DiffuseStats::Primitive* worst = nullptr;
+  double length = std::numeric_limits<double>::infinity();
+  for (const DiffuseStats::Primitive& primitive : primitives) {
+    if (!primitive.is_coarse()) continue;
+    ++coarse_count;
+    if (!worst || primitive.interpolation_error > worst->interpolation_error) worst = &primitive;
+    length = std::min(length, primitive.longest_edge / kPieces);
+  }
+  if (!worst) return;
+  log::warning(
+      "too coarse for transfer at vertices: {} of {} meshes; between the vertices of {} irradiance "
+      "is off by {:.0f}% (RMS). Split long edges: prt-import --max-edge {:.2g}",
+      coarse_count, primitives.size(), worst->name, 100 * *worst->interpolation_error, length);
+}
+
+}  // namespace
 
 void report_figures(Report& report, const DiffuseStats& stats,
                     const signal::TransferSignal& signal) {
@@ -20,9 +46,12 @@ void report_figures(Report& report, const DiffuseStats& stats,
                               {"vertex_count", primitive.vertex_count},
                               {"triangle_count", primitive.triangle_count},
                               {"buried_vertex_count", primitive.buried_vertex_count}});
+    if (primitive.interpolation_error)
+      json["meshes"].back()["interpolation_error"] = *primitive.interpolation_error;
   }
   report.add_stage("build", stats.build_seconds);
   report.add_stage("trace", stats.trace_seconds);
+  report.add_stage("interpolation", stats.interpolation_seconds);
   report.add_stage("bounce", stats.bounce_seconds);
   if (stats.matrix_seconds > 0) report.add_stage("matrices", stats.matrix_seconds);
   if (stats.buried_vertex_count > 0) {
@@ -30,6 +59,7 @@ void report_figures(Report& report, const DiffuseStats& stats,
                  stats.buried_vertex_count, signal.vertex_count(),
                  stats.buried_vertex_count - stats.unrepaired_vertex_count);
   }
+  warn_of_coarse_meshes(stats.primitives);
   log::info("{} vertices, {:.1f} million rays, {:.1f} million a second", signal.vertex_count(),
             1e-6 * static_cast<double>(stats.rays_cast), 1e-6 * stats.rays_per_second);
 }

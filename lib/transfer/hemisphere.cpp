@@ -14,8 +14,12 @@ Hemisphere::Hemisphere(const SceneIndex& index, const Directions& directions)
 }
 
 void Hemisphere::trace(std::size_t vertex) {
-  origin_ = index_.ray_origin(vertex);
-  normal_ = index_.normal(vertex);
+  trace(index_.ray_origin(vertex), index_.normal(vertex));
+}
+
+void Hemisphere::trace(const Vec3& origin, const Vec3& normal) {
+  origin_ = origin;
+  normal_ = normal;
   if (const ray::ShadowTree* tree = index_.shadow_tree()) {
     tree->trace(origin_, normal_, directions_.beams, lanes_);
   } else {

@@ -20,6 +20,8 @@ class Hemisphere {
   /// Casts a shadow ray in each direction above the vertex's horizon. Once the index has given its
   /// shadow tree back, by its engine, which is slower.
   void trace(std::size_t vertex);
+  /// The same of any point, as of index.ray_origin().
+  void trace(const Vec3& origin, const Vec3& normal);
   /// Those that are blocked: direction number and cosine, in the order of the directions.
   std::span<const WeightedRow> blocked() const { return blocked_; }
   /// The others.

@@ -14,6 +14,7 @@
 #include "sh/quadrature.h"
 #include "sh/zonal.h"
 #include "transfer/buried.h"
+#include "transfer/interpolation_error.h"
 #include "transfer/reflection.h"
 #include "transfer/resume.h"
 
@@ -37,7 +38,8 @@ class VisibilityPass {
 
   Visibility run() {
     const Stopwatch watch;
-    const std::vector<float> basis = options_.shadowed ? basis_rows() : std::vector<float>();
+    std::vector<float> basis;
+    if (options_.shadowed) basis = basis_rows(options_.band_count, directions_);
     const TracedRows traced{rows_.data(), count_, count_, buried_.data()};
     const std::vector<std::uint8_t> restored = restore_traced(checkpoint_, index_, traced, stats_);
     std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
@@ -54,6 +56,7 @@ class VisibilityPass {
     const BuriedRepair repair(index_, buried_);
     repair.apply(rows_.data(), count_);
     fill_stats(repair);
+    if (options_.shadowed) measure_interpolation(index_, stats_);
     stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), confirming_rays);
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
@@ -61,14 +64,6 @@ class VisibilityPass {
   }
 
  private:
-  std::vector<float> basis_rows() const {
-    std::vector<float> rows(directions_.count() * padded(count_));
-    for (std::size_t d = 0; d < directions_.count(); ++d) {
-      sh::evaluate(options_.band_count, directions_[d], {&rows[d * padded(count_)], count_});
-    }
-    return rows;
-  }
-
   std::uint64_t run_block(std::size_t begin, std::size_t end, const std::vector<float>& basis) {
     Hemisphere hemisphere(index_, directions_);
     std::vector<double> whole(count_);
