@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "image/false_color.h"
+#include "image/srgb.h"
 #include "runtime/viewer.h"
 
 namespace prt::runtime {
@@ -29,6 +31,30 @@ constexpr Mode kModes[] = {{"Compressed, one draw", Draw::single, Show::radiance
 
 bool is_current(const Mode& mode, const View& view) {
   return mode.show == view.show && (mode.show != Show::radiance || mode.draw == view.draw);
+}
+
+/// A bar of the heat map's colours with what they stand for below it.
+void draw_error_scale() {
+  constexpr float kWidth = 240.0f, kHeight = 14.0f, kSlice = 2.0f;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (float x = 0.0f; x < kWidth; x += kSlice) {
+    const Vec3 color = image::heat_color(x / (kWidth - kSlice));
+    list.AddRectFilled(
+        {corner.x + x, corner.y}, {corner.x + x + kSlice, corner.y + kHeight},
+        ImGui::GetColorU32({image::srgb_from_linear(color.x), image::srgb_from_linear(color.y),
+                            image::srgb_from_linear(color.z), 1.0f}));
+  }
+  ImGui::Dummy({kWidth, kHeight});
+  const auto label = [](const std::string& text, float place) {  // 0: left, 1: right
+    const float free = kWidth - ImGui::CalcTextSize(text.c_str()).x;
+    if (place > 0.0f) ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + place * free);
+    ImGui::TextUnformatted(text.c_str());
+  };
+  label("0", 0.0f);
+  label(fmt::format("{:g}%", 50.0f * kErrorScale), 0.5f);
+  label(fmt::format("{:g}% and more", 100.0f * kErrorScale), 1.0f);
+  ImGui::TextUnformatted("error of a vertex, of the transfer's RMS");
 }
 
 }  // namespace
@@ -92,6 +118,7 @@ void Viewer::draw_panel() {
     ImGui::TextUnformatted(model_text_.c_str());
   ImGui::Separator();
   draw_mode_choice();
+  if (view_.show == Show::error) draw_error_scale();
   bool kept = view_.sums == Sums::kept;
   if (ImGui::Checkbox("Sums kept while the light stays", &kept))
     view_.sums = kept ? Sums::kept : Sums::every_frame;

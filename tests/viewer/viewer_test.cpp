@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "gltf/document.h"
+#include "image/false_color.h"
 #include "runtime/glossy_models.h"
 
 namespace prt::runtime {
@@ -207,6 +208,37 @@ TEST_F(ViewerTest, WhatTheFilesCannotShowIsAnError) {
   EXPECT_NO_THROW(Viewer{options_});
   options_.model.clear();
   EXPECT_THROW(Viewer{options_}, Error);
+}
+
+/// Pixels that have the heat map's colour of a relative error.
+std::size_t count_of(const image::Image& image, float error) {
+  const Vec3 color = image::heat_color(error / kErrorScale);
+  std::size_t count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float* p = image.at(x, y);
+      count += (Vec3(p[0], p[1], p[2]) - color).length() < 0.05f;
+    }
+  return count;
+}
+
+TEST_F(ViewerTest, PanelHasTheColoursOfTheErrorHeatMap) {
+  signal_.blocks.front().name = "torus";
+  signal::write_transfer(path("good.transfer.exr"), signal_);
+  options_.transfer = path("good.transfer.exr");
+  options_.show = Show::error;
+  const auto shot = [&] {
+    Viewer(options_).run();
+    return image::read_image(options_.screenshot);
+  };
+  const image::Image bare = shot();
+  options_.panel = true;
+  const image::Image with_panel = shot();
+  EXPECT_GT(count_of(bare, 0.0f), 10000u);  // the compression is exact
+  for (const float error : {0.025f, 0.05f, 0.075f, 0.1f}) {
+    EXPECT_EQ(count_of(bare, error), 0u) << error;
+    EXPECT_GT(count_of(with_panel, error), 10u) << error;
+  }
 }
 
 TEST_F(ViewerTest, OpensWithoutAModel) {
