@@ -25,8 +25,11 @@ class ClusterSums {
   /// The light has changed.
   void outdate() { kept_.outdate(); }
   bool is_current() const { return kept_.is_current(); }
-  /// Sums. `constants`: of ClusterConstants for each sample of the light; the table has the same.
-  /// Where light varies, all vertices are drawn at once, with constants from the table.
+  /// As ExitBuffer's.
+  [[nodiscard]] bool make_room() { return kept_.make_room(); }
+  /// Sums, after make_room(). `constants`: of ClusterConstants for each sample of the light; the
+  /// table has the same. Where light varies, all vertices are drawn at once, with constants from
+  /// the table.
   void fill(const LightGrid& grid, const std::vector<Vec4>& constants, const gl::Table& table);
   /// After fill().
   void draw(const Viewpoint& viewpoint) const { kept_.draw(viewpoint); }

@@ -46,13 +46,13 @@ gl::VertexArray CompressedDrawing::make_array(const gl::Buffer& positions,
 }
 
 CompressedDrawing::CompressedDrawing(const Model& model, const ExitStage& exit,
-                                     const gl::Buffer& positions, const gl::Buffer& indices)
+                                     const gl::Buffer& positions, const gl::Buffer& indices,
+                                     bool keep_sums)
     : exit_(exit),
       index_count_(model.indices.size()),
       constant_count_(first_constants(model.transfer->encoding).back()),
       products_(*model.transfer, exit.layout()),
-      weights_(model.transfer->encoding, model.transfer->weight_format, exit.end_location()),
-      sums_(model, exit, positions, indices) {
+      weights_(model.transfer->encoding, model.transfer->weight_format, exit.end_location()) {
   const cpca::Encoding& encoding = model.transfer->encoding;
   check_uniforms(encoding, exit.layout());
   constants_of_vertices_ =
@@ -60,6 +60,7 @@ CompressedDrawing::CompressedDrawing(const Model& model, const ExitStage& exit,
   single_array_ = make_array(positions, indices);
   make_chunks(model, positions);
   make_programs();
+  if (keep_sums) sums_.emplace(model, exit, positions, indices);
 }
 
 void CompressedDrawing::make_chunks(const Model& model, const gl::Buffer& positions) {
@@ -95,7 +96,7 @@ void CompressedDrawing::make_programs() {
 }
 
 void CompressedDrawing::set_light(const LightField& field) {
-  sums_.outdate();
+  if (sums_) sums_->outdate();
   grid_ = field.grid;
   constants_.clear();
   for (const sh::Light& sample : field.samples) {
@@ -128,9 +129,11 @@ void CompressedDrawing::draw_single(const Viewpoint& viewpoint) const {
   });
 }
 
-void CompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
-  if (!sums_.is_current()) sums_.fill(grid_, constants_, constant_table_);
-  sums_.draw(viewpoint);
+bool CompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+  if (!sums_ || !sums_->make_room()) return false;
+  if (!sums_->is_current()) sums_->fill(grid_, constants_, constant_table_);
+  sums_->draw(viewpoint);
+  return true;
 }
 
 void CompressedDrawing::draw_clusters(const Viewpoint& viewpoint) const {

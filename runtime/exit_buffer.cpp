@@ -1,6 +1,7 @@
 #include "runtime/exit_buffer.h"
 
-#include <utility>
+#include "core/error.h"
+#include "core/log.h"
 
 namespace prt::runtime {
 
@@ -37,19 +38,32 @@ std::size_t ExitBuffer::color_size() const {
   return vertex_count_ * exit_.layout().color_vector_count();
 }
 
-void ExitBuffer::fill(const std::function<void(int color)>& draw_points) {
-  const std::size_t color_count = exit_.layout().color_count(), count = color_count * color_size();
-  const bool is_first = table_.count() != count;
-  if (is_first) {
-    captured_ = gl::Buffer(count * sizeof(Vec4));
-    program_ = gl::Program("transfer_kept.vert", exit_.fragment_shader(), exit_.defines());
+std::size_t ExitBuffer::byte_count() const {
+  return exit_.layout().color_count() * color_size() * sizeof(Vec4);
+}
+
+bool ExitBuffer::make_room() {
+  if (has_no_room_ || table_.count() > 0) return !has_no_room_;
+  try {
+    captured_ = gl::Buffer(byte_count());
+    table_ = gl::Table(byte_count() / sizeof(Vec4));
+  } catch (const Error& error) {
+    log::warning("no room to keep what {} vertices send, which is summed in every frame: {}",
+                 vertex_count_, error.what());
+    captured_ = gl::Buffer();
+    has_no_room_ = true;
+    return false;
   }
-  for (std::size_t color = 0; color < color_count; ++color) {
-    const std::size_t byte_count = color_size() * sizeof(Vec4);
-    const gl::Capture capture(captured_, color * byte_count, byte_count);
+  program_ = gl::Program("transfer_kept.vert", exit_.fragment_shader(), exit_.defines());
+  return true;
+}
+
+void ExitBuffer::fill(const std::function<void(int color)>& draw_points) {
+  const std::size_t color_bytes = color_size() * sizeof(Vec4);
+  for (std::size_t color = 0; color < exit_.layout().color_count(); ++color) {
+    const gl::Capture capture(captured_, color * color_bytes, color_bytes);
     draw_points(static_cast<int>(color));
   }
-  if (is_first) table_ = gl::Table(count);  // not before: it is bound, where a source may be
   table_.upload(captured_);
   is_current_ = true;
 }

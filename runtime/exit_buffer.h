@@ -30,14 +30,18 @@ class ExitBuffer {
   /// The light has changed.
   void outdate() { is_current_ = false; }
   bool is_current() const { return is_current_; }
-  /// `draw_points` draws every vertex as a point, in the order of places, with a capturing program
-  /// that is in use; for each colour.
+  /// Takes room for the values when first called, before anything is bound. False where OpenGL has
+  /// none, with a warning the first time; they are then to be summed in every frame.
+  [[nodiscard]] bool make_room();
+  /// After make_room(). `draw_points` draws every vertex as a point, in the order of places, with a
+  /// capturing program that is in use; for each colour.
   void fill(const std::function<void(int color)>& draw_points);
   /// After fill().
   void draw(const Viewpoint& viewpoint) const;
 
  private:
   std::size_t color_size() const;
+  std::size_t byte_count() const;
 
   const ExitStage& exit_;
   std::size_t vertex_count_, index_count_;
@@ -47,6 +51,7 @@ class ExitBuffer {
   gl::Buffer captured_;
   gl::Table table_;  // colour by colour, vertex by vertex
   bool is_current_ = false;
+  bool has_no_room_ = false;
 };
 
 }  // namespace prt::runtime

@@ -17,10 +17,12 @@ namespace prt::runtime {
 /// for each colour. Diffuse transfer always takes one.
 enum class Passes { automatic, one, per_channel };
 
-/// How glossy transfer is drawn. Passes leave the pixels as they are; a map errs by 0.001.
+/// How transfer is drawn: the first two of glossy transfer. Passes and sums leave the pixels as
+/// they are; a map errs by 0.001.
 struct ExitOptions {
   Passes passes = Passes::automatic;
   ViewBasis view_basis = ViewBasis::polynomial;
+  bool keep_sums = true;  ///< false: all drawing will be Sums::every_frame, nothing is made to keep
 };
 
 /// 1 or 3. A pass needs its vec4 of exit values and the view as varyings, and of a cluster's

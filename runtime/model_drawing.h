@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,19 +26,20 @@ namespace prt::runtime {
 /// Compressed transfer, adaptive or not; both ways give the same pixels.
 class CompressedDrawing {
  public:
-  /// The model has compressed transfer; `exit`, made for it, must outlive this. Throws Error
+  /// The model has compressed transfer; `exit`, made for it, must outlive this. `keep_sums` makes
+  /// what draw_kept() needs, where ExitBuffer::fits. Throws Error
   /// (failed) when it has more components than this OpenGL has vertex attributes (not needed by
   /// adaptive transfer) or uniforms for.
   CompressedDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
-                    const gl::Buffer& indices);
+                    const gl::Buffer& indices, bool keep_sums);
 
   void set_light(const LightField& field);
 
   /// All clusters in one draw call; constants are fetched for each vertex.
   void draw_single(const Viewpoint& viewpoint) const;
-  /// The same from exit values that are kept while the light stays (runtime/exit_buffer.h, where
-  /// they fit).
-  void draw_kept(const Viewpoint& viewpoint);
+  /// The same from exit values that are kept while the light stays (runtime/exit_buffer.h). False,
+  /// and nothing drawn, without keep_sums or room for them.
+  [[nodiscard]] bool draw_kept(const Viewpoint& viewpoint);
   /// The loop of [Sloan03] §6.2: supercluster by supercluster, constants in uniform registers,
   /// added up by blending. Where two triangles coincide exactly, both are added.
   void draw_clusters(const Viewpoint& viewpoint) const;
@@ -61,25 +63,25 @@ class CompressedDrawing {
   gl::Table constant_table_;
   LightGrid grid_;
   std::vector<Vec4> constants_;  // of each sample of the light, of each pass
-  ClusterSums sums_;
+  std::optional<ClusterSums> sums_;
 };
 
 /// Uncompressed transfer: the product of all coefficients, or of the matrix, with the light in the
 /// shader of each vertex.
 class UncompressedDrawing {
  public:
-  /// The model has an uncompressed signal; `exit`, made for it, must outlive this. Throws Error
+  /// The model has an uncompressed signal; `exit` and `keep_sums` as above. Throws Error
   /// (failed) when it does not fit.
   UncompressedDrawing(const Model& model, const ExitStage& exit, const gl::Buffer& positions,
-                      const gl::Buffer& indices);
+                      const gl::Buffer& indices, bool keep_sums);
   UncompressedDrawing(const UncompressedDrawing&) = delete;  // programs refer to it
   UncompressedDrawing& operator=(const UncompressedDrawing&) = delete;
   /// Whether the signal does.
   static bool fits(const signal::TransferSignal& signal, const ExitLayout& layout);
   void set_light(const LightField& field);
   void draw(const Viewpoint& viewpoint) const;
-  /// From exit values that are kept while the light stays (runtime/exit_buffer.h, where they fit).
-  void draw_kept(const Viewpoint& viewpoint);
+  /// As CompressedDrawing's.
+  [[nodiscard]] bool draw_kept(const Viewpoint& viewpoint);
 
  private:
   void bind(const gl::Program& program) const;
@@ -90,7 +92,7 @@ class UncompressedDrawing {
   gl::VertexArray array_;
   gl::Table transfer_;
   LightVectors light_;
-  ExitBuffer kept_;
+  std::optional<ExitBuffer> kept_;
   LightPrograms programs_, sum_programs_;
 };
 

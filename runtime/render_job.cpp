@@ -101,7 +101,10 @@ void render(const RenderOptions& options, Report& report) {
   report.json()["opengl"] = gl::description();
   stage.emplace(report, "upload");
   Renderer renderer;
-  renderer.set_model(model, options.exit);
+  ExitOptions exit = options.exit;
+  exit.keep_sums =
+      view.sums == Sums::kept && view.draw != Draw::clusters && view.show == Show::radiance;
+  renderer.set_model(model, exit);
   report.json()["pass_count"] = renderer.pass_count();
   if (!options.draw && !renderer.can_draw(view.draw, view.show)) view.draw = Draw::single;
   renderer.check_can_draw(view.draw, view.show);

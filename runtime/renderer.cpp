@@ -80,6 +80,15 @@ std::vector<Vec3> error_colors(const Model& model) {
   return colors;
 }
 
+bool can_keep_sums(const ExitLayout& layout, std::size_t vertex_count) {
+  if (ExitBuffer::fits(layout, vertex_count)) return true;
+  log::warning(
+      "what {} vertices send does not fit what this OpenGL captures or holds in a texture: it is "
+      "summed in every frame",
+      vertex_count);
+  return false;
+}
+
 }  // namespace
 
 struct Renderer::Drawings {
@@ -90,10 +99,10 @@ struct Renderer::Drawings {
         positions(std::span(model.positions)),
         indices(std::span(model.indices)),
         exit(model, options),
-        can_keep(ExitBuffer::fits(exit.layout(), model.positions.size())),
+        keep_sums(options.keep_sums && can_keep_sums(exit.layout(), model.positions.size())),
         black(model.indices.size(), positions, indices) {
     if (model.transfer) {
-      compressed.emplace(model, exit, positions, indices);
+      compressed.emplace(model, exit, positions, indices, keep_sums);
       const std::size_t index_count = model.indices.size();
       clusters.emplace(label_colors(model.transfer->encoding.cluster_of_point), index_count,
                        positions, indices);
@@ -109,7 +118,7 @@ struct Renderer::Drawings {
   void add_uncompressed(const Model& model) {
     uncompressed_fits = UncompressedDrawing::fits(*model.signal, exit.layout());
     if (uncompressed_fits || !model.transfer)
-      uncompressed.emplace(model, exit, positions, indices);
+      uncompressed.emplace(model, exit, positions, indices, keep_sums);
     else
       log::warning("the uncompressed transfer does not fit a texture of this OpenGL: not drawn");
   }
@@ -139,11 +148,13 @@ struct Renderer::Drawings {
   }
 
   void draw_fronts(const View& view, const Viewpoint& viewpoint) {
-    const bool keep = can_keep && view.sums == Sums::kept;
+    const bool keep = view.sums == Sums::kept;
     if (view.draw == Draw::clusters) return compressed->draw_clusters(viewpoint);
-    if (view.draw == Draw::single)
-      return keep ? compressed->draw_kept(viewpoint) : compressed->draw_single(viewpoint);
-    return keep ? uncompressed->draw_kept(viewpoint) : uncompressed->draw(viewpoint);
+    if (view.draw == Draw::single) {
+      if (!keep || !compressed->draw_kept(viewpoint)) compressed->draw_single(viewpoint);
+    } else {
+      if (!keep || !uncompressed->draw_kept(viewpoint)) uncompressed->draw(viewpoint);
+    }
   }
 
   void set_light(const LightField& field) {
@@ -156,7 +167,7 @@ struct Renderer::Drawings {
   LightGrid grid;
   gl::Buffer positions, indices;
   ExitStage exit;
-  bool can_keep;  // exit values
+  bool keep_sums;
   bool uncompressed_fits = true;
   BlackDrawing black;
   std::optional<CompressedDrawing> compressed;

@@ -20,8 +20,9 @@ namespace prt::runtime {
 /// How transfer is drawn: compressed in one call, compressed by clusters, or uncompressed.
 enum class Draw { single, clusters, uncompressed };
 /// When exit values of compressed transfer in one call, or uncompressed transfer, are summed: when
-/// the light changes, to be kept until it does again (where they fit, runtime/exit_buffer.h), or in
-/// every frame for every vertex that is shaded, as the paper does. By clusters it is every frame.
+/// the light changes, to be kept until it does again (where there is room, runtime/exit_buffer.h; a
+/// warning tells where not), or in every frame for every vertex that is shaded, as the paper does.
+/// By clusters it is every frame.
 enum class Sums { kept, every_frame };
 /// What is shown: exit radiance, or false-colour pictures of the compression.
 enum class Show { radiance, clusters, superclusters, error };

@@ -75,16 +75,17 @@ std::vector<std::uint32_t> numbers(std::size_t count) {
 }  // namespace
 
 UncompressedDrawing::UncompressedDrawing(const Model& model, const ExitStage& exit,
-                                         const gl::Buffer& positions, const gl::Buffer& indices)
+                                         const gl::Buffer& positions, const gl::Buffer& indices,
+                                         bool keep_sums)
     : exit_(exit),
       vertex_count_(model.positions.size()),
       index_count_(model.indices.size()),
       band_count_(model.signal->band_count),
       array_(array_with_positions(positions, indices)),
       transfer_(table_size(*model.signal, exit.layout())),
-      light_(light_vector_count(band_count_, exit.layout().is_glossy())),
-      kept_(exit, numbers(vertex_count_), index_count_, positions, indices) {
+      light_(light_vector_count(band_count_, exit.layout().is_glossy())) {
   exit.attach(array_);
+  if (keep_sums) kept_.emplace(exit, numbers(vertex_count_), index_count_, positions, indices);
   const bool is_glossy = exit.layout().is_glossy();
   transfer_.upload(is_glossy ? columns_of(*model.signal, exit.layout())
                              : padded_rows(*model.signal));
@@ -106,7 +107,7 @@ bool UncompressedDrawing::fits(const signal::TransferSignal& signal, const ExitL
 }
 
 void UncompressedDrawing::set_light(const LightField& field) {
-  kept_.outdate();
+  if (kept_) kept_->outdate();
   light_.set(field, [&](const sh::Light& sample, Vec4* vectors) {
     const sh::Light fitted = sh::with_band_count(sample, band_count_);
     for (std::size_t color = 0; color < 3; ++color)
@@ -138,16 +139,18 @@ void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
   });
 }
 
-void UncompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
-  if (!kept_.is_current()) {
+bool UncompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+  if (!kept_ || !kept_->make_room()) return false;
+  if (!kept_->is_current()) {
     const gl::Program& program = sum_programs_.of(light_.varies());
     bind(program);
-    kept_.fill([&](int color) {
+    kept_->fill([&](int color) {
       program.set("u_pass", color);
       gl::draw_points(0, vertex_count_);
     });
   }
-  kept_.draw(viewpoint);
+  kept_->draw(viewpoint);
+  return true;
 }
 
 }  // namespace prt::runtime
