@@ -16,48 +16,15 @@
 #include "cpca/overdraw.h"
 #include "cpca/projection.h"
 #include "cpca/reclassify.h"
-#include "cpca/signals.h"
+#include "cpca/sheet.h"
 #include "cpca/superclusters.h"
 
 namespace prt::cpca {
 namespace {
 
-using Indices = std::vector<std::uint32_t>;
-
-std::size_t plain_sent_count(const Indices& indices, const Indices& labels) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < indices.size(); i += 3) {
-    count += std::set{labels[indices[i]], labels[indices[i + 1]], labels[indices[i + 2]]}.size();
-  }
-  return count;
-}
-
 double total(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
-
-/// A sheet whose signal varies smoothly in places and jumps in others, as transfer does.
-struct Sheet {
-  static constexpr std::uint32_t kColumns = 16, kRows = 13;
-  static constexpr int kDimension = 12;
-  std::vector<float> signal = std::vector<float>(kColumns * kRows * kDimension);
-  Indices indices = grid(kColumns, kRows);
-  Encoding encoding;
-
-  explicit Sheet(int cluster_count = 14, int component_count = 2) {
-    const auto noise = random_values(signal.size(), 5);
-    for (std::size_t i = 0; i < signal.size(); ++i) {
-      const std::size_t p = i / kDimension;
-      const auto x = static_cast<float>(p % kColumns), y = static_cast<float>(p / kColumns);
-      const auto k = static_cast<float>(i % kDimension);
-      signal[i] = std::sin(0.11f * (k + 1) * x) + std::cos(0.07f * k * y) + (x > y ? 0.4f : 0.0f) +
-                  0.3f * noise[i];
-    }
-    encoding = encode_static(signal, kDimension,
-                             {.cluster_count = cluster_count, .component_count = component_count})
-                   .encoding;
-  }
-};
 
 /// The same greedy search, every quotient computed anew before every move.
 Encoding plainly_reclassified(const Sheet& sheet, double error_budget) {
@@ -191,105 +158,6 @@ TEST(Reclassify, IsTheSameForAnyNumberOfThreads) {
   set_thread_count(0);
   EXPECT_EQ(one.encoding.cluster_of_point, many.encoding.cluster_of_point);
   EXPECT_EQ(one.encoding.weights, many.encoding.weights);
-}
-
-/// Pairs merged one by one, everything counted anew.
-Indices plain_superclusters(const Indices& indices, const Indices& cluster_of_point,
-                            const Indices& registers, std::uint32_t budget) {
-  Indices group(registers.size());
-  std::iota(group.begin(), group.end(), 0u);
-  for (;;) {
-    Indices labels, sizes(registers.size());
-    for (const std::uint32_t cluster : cluster_of_point) labels.push_back(group[cluster]);
-    for (std::size_t k = 0; k < group.size(); ++k) sizes[group[k]] += registers[k];
-    std::size_t best_gain = 0;
-    std::uint32_t best_low = 0, best_high = 0;
-    for (std::uint32_t low = 0; low < group.size(); ++low) {
-      for (std::uint32_t high = low + 1; high < group.size(); ++high) {
-        if (sizes[low] == 0 || sizes[high] == 0 || sizes[low] + sizes[high] > budget) continue;
-        Indices merged = labels;
-        std::replace(merged.begin(), merged.end(), high, low);
-        const std::size_t gain =
-            plain_sent_count(indices, labels) - plain_sent_count(indices, merged);
-        if (gain <= best_gain) continue;
-        best_gain = gain;
-        best_low = low;
-        best_high = high;
-      }
-    }
-    if (best_gain == 0) break;
-    std::replace(group.begin(), group.end(), best_high, best_low);
-  }
-  Indices numbers = group;  // groups are named by their lowest cluster
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  for (std::uint32_t& g : group) {
-    g = static_cast<std::uint32_t>(std::lower_bound(numbers.begin(), numbers.end(), g) -
-                                   numbers.begin());
-  }
-  return group;
-}
-
-TEST(Superclusters, AreThoseOfThePlainGreedySearch) {
-  const Sheet sheet(25, 3);
-  Indices registers = register_counts(sheet.encoding, 1);
-  EXPECT_EQ(registers, Indices(25, 4u));
-  registers[3] = 9;  // adaptive clusters differ
-  for (const std::uint32_t budget : {1u, 8u, 16u, 29u, 256u}) {
-    const Indices found =
-        find_superclusters(sheet.indices, sheet.encoding.cluster_of_point, registers, budget);
-    EXPECT_EQ(found, plain_superclusters(sheet.indices, sheet.encoding.cluster_of_point, registers,
-                                         budget))
-        << budget;
-    const std::uint32_t count = *std::max_element(found.begin(), found.end()) + 1;
-    if (budget == 1) {
-      EXPECT_EQ(count, 25u);
-    }  // nothing fits, everything stays
-    if (budget == 256) {
-      EXPECT_EQ(count, 1u);
-    }  // the sheet is connected
-    for (std::uint32_t s = 0; s < count && budget >= 9; ++s) {
-      std::uint32_t size = 0;
-      for (std::size_t k = 0; k < 25; ++k) size += found[k] == s ? registers[k] : 0;
-      EXPECT_LE(size, budget);
-    }
-  }
-}
-
-TEST(Superclusters, NeedTheRegistersOfThePaper) {
-  // [Sloan03] §6.2: m_s (n' + 1) for diffuse, m_s (n' + 1) N_r / 4 for glossy transfer.
-  Encoding encoding;
-  encoding.cluster_count = 2;
-  encoding.component_count = 8;
-  EXPECT_EQ(register_counts(encoding, 1), Indices({9, 9}));
-  EXPECT_EQ(register_counts(encoding, 16), Indices({36, 36}));
-  EXPECT_EQ(register_counts(encoding, 25), Indices({63, 63}));
-  encoding.component_counts = {0, 8};
-  EXPECT_EQ(register_counts(encoding, 1), Indices({1, 9}));
-}
-
-TEST(Superclusters, SortingClustersLeavesTheReconstruction) {
-  Sheet sheet(25, 3);
-  sheet.encoding.component_counts.assign(25, 3);
-  sheet.encoding.component_counts[7] = 2;
-  const Encoding before = sheet.encoding;
-  const Indices superclusters =
-      find_superclusters(sheet.indices, before.cluster_of_point, register_counts(before, 1), 20);
-  const Indices first = sort_clusters(superclusters, sheet.encoding);
-  EXPECT_NE(sheet.encoding.cluster_of_point, before.cluster_of_point);
-  std::vector<float> expected(Sheet::kDimension), found(Sheet::kDimension);
-  for (std::size_t p = 0; p < before.point_count; ++p) {
-    reconstruct(before, p, expected);
-    reconstruct(sheet.encoding, p, found);
-    EXPECT_EQ(found, expected);
-  }
-  Indices labels;
-  for (const std::uint32_t cluster : before.cluster_of_point) {
-    labels.push_back(superclusters[cluster]);
-  }
-  EXPECT_EQ(superclusters_of_points(sheet.encoding, first), labels);
-  EXPECT_TRUE(std::is_sorted(first.begin(), first.end()));
-  EXPECT_EQ(first.front(), 0u);
 }
 
 TEST(Coherence, OverdrawFallsStepByStep) {

@@ -104,4 +104,13 @@ inline void for_covered(const Result& result, const std::function<void(int, int)
   EXPECT_GT(count, 100);
 }
 
+/// Where the centre of a pixel meets the plane of the given normal through the origin.
+inline Vec3 point_on_plane(const camera::Camera& camera, const Vec3& normal, int size, int x,
+                           int y) {
+  const Vec3 direction =
+      camera.ray_direction((2.0f * static_cast<float>(x) + 1.0f) / static_cast<float>(size) - 1.0f,
+                           1.0f - (2.0f * static_cast<float>(y) + 1.0f) / static_cast<float>(size));
+  return camera.eye - direction * (camera.eye.dot(normal) / direction.dot(normal));
+}
+
 }  // namespace prt::reference
