@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -97,19 +96,10 @@ class DiffuseBake {
     const Stopwatch watch;
     const std::vector<float> basis = basis_rows(options_.band_count, directions_);
     const TracedRows traced{signal_.values.data(), row_size_, coefficient_count_, buried_.data()};
-    const std::vector<std::uint8_t> restored = restore_traced(checkpoint_, index_, traced, stats_);
-    std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
-    Progress progress("shadows",
-                      index_.vertex_count() * static_cast<std::size_t>(options_.ray_count), "rays");
-    parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
-      if (!restored[begin / kVertexBlock]) {
-        rays[begin / kVertexBlock] = trace_block(begin, end, basis);
-        store_traced(checkpoint_, index_, traced, begin);
-      }
-      progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
-    });
+    stats_.rays_cast = trace_vertices(
+        checkpoint_, index_, traced, "shadows", options_.ray_count,
+        [&](std::size_t begin, std::size_t end) { return trace_block(begin, end, basis); }, stats_);
     for (std::size_t v = 0; v < index_.vertex_count(); ++v) copy_to_channels(v);
-    stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
     stats_.rays_cast += confirm_buried(index_, directions_, buried_);
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;

@@ -4,10 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
-#include "core/parallel.h"
-#include "core/progress.h"
 #include "core/stopwatch.h"
 #include "linalg/product.h"
 #include "sh/basis.h"
@@ -41,25 +38,16 @@ class VisibilityPass {
     std::vector<float> basis;
     if (options_.shadowed) basis = basis_rows(options_.band_count, directions_);
     const TracedRows traced{rows_.data(), count_, count_, buried_.data()};
-    const std::vector<std::uint8_t> restored = restore_traced(checkpoint_, index_, traced, stats_);
-    std::vector<std::uint64_t> rays(block_count(index_.vertex_count(), kVertexBlock));
-    Progress progress("visibility",
-                      index_.vertex_count() * static_cast<std::size_t>(options_.ray_count), "rays");
-    parallel_for(index_.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
-      if (!restored[begin / kVertexBlock]) {
-        rays[begin / kVertexBlock] = run_block(begin, end, basis);
-        store_traced(checkpoint_, index_, traced, begin);
-      }
-      progress.advance((end - begin) * static_cast<std::size_t>(options_.ray_count));
-    });
-    const std::uint64_t confirming_rays = confirm_buried(index_, directions_, buried_);
+    stats_.rays_cast = trace_vertices(
+        checkpoint_, index_, traced, "visibility", options_.ray_count,
+        [&](std::size_t begin, std::size_t end) { return run_block(begin, end, basis); }, stats_);
+    stats_.rays_cast += confirm_buried(index_, directions_, buried_);
     const BuriedRepair repair(index_, buried_);
     repair.apply(rows_.data(), count_);
     fill_stats(repair);
-    if (options_.shadowed) measure_interpolation(index_, stats_);
-    stats_.rays_cast = std::accumulate(rays.begin(), rays.end(), confirming_rays);
     stats_.trace_seconds = watch.seconds();
     stats_.rays_per_second = static_cast<double>(stats_.rays_cast) / stats_.trace_seconds;
+    if (options_.shadowed) measure_interpolation(index_, stats_);
     return {std::move(rows_), repair.stand_ins(index_)};
   }
 

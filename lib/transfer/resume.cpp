@@ -1,9 +1,13 @@
 #include "transfer/resume.h"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
+#include <vector>
 
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "transfer/reflection.h"
 
 namespace prt::transfer {
@@ -18,8 +22,7 @@ Checkpoint::Name block_name(std::size_t begin) {
   return {kTraceStage, static_cast<std::uint32_t>(begin / kVertexBlock)};
 }
 
-}  // namespace
-
+/// Returns for each block whether it was there.
 std::vector<std::uint8_t> restore_traced(const Checkpoint& checkpoint, const SceneIndex& index,
                                          const TracedRows& traced, DiffuseStats& stats) {
   std::vector<std::uint8_t> restored(block_count(index.vertex_count(), kVertexBlock));
@@ -55,6 +58,25 @@ void store_traced(Checkpoint& checkpoint, const SceneIndex& index, const TracedR
     values.push_back(traced.buried[vertex]);
   }
   checkpoint.store(block_name(begin), std::span<const float>(values));
+}
+
+}  // namespace
+
+std::uint64_t trace_vertices(Checkpoint& checkpoint, const SceneIndex& index,
+                             const TracedRows& traced, const char* name, int ray_count,
+                             const TraceBlock& trace_block, DiffuseStats& stats) {
+  const auto rays_of_vertex = static_cast<std::size_t>(ray_count);
+  const std::vector<std::uint8_t> restored = restore_traced(checkpoint, index, traced, stats);
+  std::vector<std::uint64_t> rays(restored.size());
+  Progress progress(name, index.vertex_count() * rays_of_vertex, "rays");
+  parallel_for(index.vertex_count(), kVertexBlock, [&](std::size_t begin, std::size_t end) {
+    if (!restored[begin / kVertexBlock]) {
+      rays[begin / kVertexBlock] = trace_block(begin, end);
+      store_traced(checkpoint, index, traced, begin);
+    }
+    progress.advance((end - begin) * rays_of_vertex);
+  });
+  return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
 }
 
 void note_resumed_bounces(double share, DiffuseStats& stats) {

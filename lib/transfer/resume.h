@@ -3,8 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
+#include <functional>
 
 #include "core/checkpoint.h"
 #include "transfer/diffuse.h"
@@ -31,14 +30,15 @@ struct TracedRows {
   std::uint8_t* buried;
 };
 
-/// Restores blocks of kVertexBlock vertices in vertex_order(), and tells how many vertices in
-/// `stats` and the log. Returns for each block whether it was there.
-std::vector<std::uint8_t> restore_traced(const Checkpoint& checkpoint, const SceneIndex& index,
-                                         const TracedRows& traced, DiffuseStats& stats);
+/// Writes the rows and marks of the vertices at [begin, end) of vertex_order(); returns rays cast.
+using TraceBlock = std::function<std::uint64_t(std::size_t begin, std::size_t end)>;
 
-/// Keeps the block that begins at place `begin` of vertex_order().
-void store_traced(Checkpoint& checkpoint, const SceneIndex& index, const TracedRows& traced,
-                  std::size_t begin);
+/// All vertices, by blocks of kVertexBlock: those that the checkpoint has are restored, which
+/// `stats` and the log tell, the others traced and kept. `name` is that of the progress, in
+/// `ray_count` rays a vertex. Returns the rays of this run.
+std::uint64_t trace_vertices(Checkpoint& checkpoint, const SceneIndex& index,
+                             const TracedRows& traced, const char* name, int ray_count,
+                             const TraceBlock& trace_block, DiffuseStats& stats);
 
 /// Tells in `stats` and the log what share of the bounces need not be done.
 void note_resumed_bounces(double share, DiffuseStats& stats);
