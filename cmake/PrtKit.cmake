@@ -55,11 +55,12 @@ function(prt_module name)
   target_precompile_headers(prt_${name} REUSE_FROM prt_precompiled)
 endfunction()
 
-# prt_test(NAME DEPENDS libraries… LAUNCHER command…): test_NAME from every *_test.cpp of
-# tests/NAME, one CTest entry, run by the command if one is given.
+# prt_test(NAME NUMERIC DEPENDS libraries… LAUNCHER command…): test_NAME from every *_test.cpp of
+# tests/NAME, one CTest entry, run by the command if one is given. Only tests that are NUMERIC, with
+# loops of their own that take seconds, are worth optimising.
 # Tests run in the source folder's tests/ so that they name their data relative to it.
 function(prt_test name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LAUNCHER" ${ARGN})
+  cmake_parse_arguments(ARG "NUMERIC" "" "DEPENDS;LAUNCHER" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${name}/*.cpp ${name}/*.h)
   if(NOT sources)
     message(FATAL_ERROR "tests/${name} holds no test")
@@ -67,8 +68,13 @@ function(prt_test name)
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(test_${name} REUSE_FROM prt_precompiled_tests)
+  if(ARG_NUMERIC)
+    target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_precompile_headers(test_${name} REUSE_FROM prt_precompiled_numeric_tests)
+  else()
+    target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O0>)
+    target_precompile_headers(test_${name} REUSE_FROM prt_precompiled_tests)
+  endif()
   add_test(NAME ${name} COMMAND ${ARG_LAUNCHER} $<TARGET_FILE:test_${name}>
            WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}/tests)
 endfunction()

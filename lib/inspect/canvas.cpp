@@ -11,11 +11,11 @@ namespace prt::inspect {
 namespace {
 
 // stb_easy_font gives four corners a rectangle: x, y, z, colour, 16 bytes each.
-struct Corner {
+struct TextCorner {
   float x, y, z;
   unsigned char color[4];
 };
-static_assert(sizeof(Corner) == 16);
+static_assert(sizeof(TextCorner) == 16);
 
 constexpr std::size_t kBytesPerCharacter = 400;  // stb_easy_font's own estimate is 270
 
@@ -38,12 +38,12 @@ void Canvas::text(int x, int y, const std::string& text, const Vec3& color) {
   for (char& c : copy) {
     if (c < ' ' || c > '~') c = '?';
   }
-  std::vector<Corner> corners((copy.size() + 1) * kBytesPerCharacter / sizeof(Corner));
+  std::vector<TextCorner> corners((copy.size() + 1) * kBytesPerCharacter / sizeof(TextCorner));
   const int count = stb_easy_font_print(0.0f, 0.0f, copy.data(), nullptr, corners.data(),
-                                        static_cast<int>(corners.size() * sizeof(Corner)));
+                                        static_cast<int>(corners.size() * sizeof(TextCorner)));
   for (int i = 0; i < count; ++i) {
-    const Corner& low = corners[static_cast<std::size_t>(4 * i)];
-    const Corner& high = corners[static_cast<std::size_t>(4 * i + 2)];
+    const TextCorner& low = corners[static_cast<std::size_t>(4 * i)];
+    const TextCorner& high = corners[static_cast<std::size_t>(4 * i + 2)];
     fill(x + static_cast<int>(low.x), y + static_cast<int>(low.y), static_cast<int>(high.x - low.x),
          static_cast<int>(high.y - low.y), color);
   }
