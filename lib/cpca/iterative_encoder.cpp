@@ -25,7 +25,7 @@ std::vector<float> first_means(std::span<const float> signal, std::size_t dimens
                                const Options& options) {
   const auto count = static_cast<std::size_t>(options.cluster_count);
   return options.start.labels.empty()
-             ? seed_means(signal, dimension, count, options.seed)
+             ? seed_means(signal, dimension, count, options.seed, options.point_weights)
              : fit_means(signal, dimension, options.start.labels, count, options.point_weights);
 }
 

@@ -16,18 +16,16 @@ namespace {
 constexpr std::size_t kSampleFloats = std::size_t{1} << 20, kMinPerMean = 16, kMaxPerMean = 64;
 constexpr std::size_t kBlock = 512;
 
-/// One point out of each of equally long stretches of the signal, filled up with zeros to `stride`.
-std::vector<float> draw_sample(std::span<const float> signal, std::size_t dimension,
-                               std::size_t stride, std::size_t sample_count, Pcg32& random) {
-  const std::size_t point_count = signal.size() / dimension;
-  std::vector<float> sample(sample_count * stride);
+/// One point out of each of equally long stretches of so many.
+std::vector<std::size_t> draw_points(std::size_t point_count, std::size_t sample_count,
+                                     Pcg32& random) {
+  std::vector<std::size_t> points(sample_count);
   for (std::size_t s = 0; s < sample_count; ++s) {
     const std::size_t begin = s * point_count / sample_count;
     const std::size_t length = (s + 1) * point_count / sample_count - begin;
-    const std::size_t point = begin + random.below(static_cast<std::uint32_t>(length));
-    std::copy_n(&signal[point * dimension], dimension, &sample[s * stride]);
+    points[s] = begin + random.below(static_cast<std::uint32_t>(length));
   }
-  return sample;
+  return points;
 }
 
 /// Index drawn in proportion to `weights`; any when all are zero.
@@ -84,7 +82,8 @@ double lower_baseline(const float* points, std::size_t stride, const float* mean
 }  // namespace
 
 std::vector<float> seed_means(std::span<const float> signal, std::size_t dimension,
-                              std::size_t cluster_count, std::uint64_t seed) {
+                              std::size_t cluster_count, std::uint64_t seed,
+                              std::span<const float> point_weights) {
   const std::size_t point_count = signal.size() / dimension;
   assert(cluster_count >= 1 && cluster_count <= point_count);
   Pcg32 random(seed);
@@ -92,20 +91,36 @@ std::vector<float> seed_means(std::span<const float> signal, std::size_t dimensi
       std::min(point_count, std::clamp(kSampleFloats / dimension, kMinPerMean * cluster_count,
                                        kMaxPerMean * cluster_count));
   const std::size_t stride = (dimension + kDistanceLanes - 1) / kDistanceLanes * kDistanceLanes;
-  const std::vector<float> sample = draw_sample(signal, dimension, stride, sample_count, random);
+  const std::vector<std::size_t> points = draw_points(point_count, sample_count, random);
+  std::vector<float> sample(sample_count * stride);  // filled up with zeros
+  for (std::size_t s = 0; s < sample_count; ++s) {
+    std::copy_n(&signal[points[s] * dimension], dimension, &sample[s * stride]);
+  }
   const auto lower = kernel_for(simd_level(), lower_avx512, lower_avx2, lower_baseline);
   std::vector<double> distances(sample_count, std::numeric_limits<double>::infinity());
+  std::vector<double> chances(point_weights.empty() ? 0 : sample_count);  // weighted distances
   std::vector<double> block_sums(block_count(sample_count, kBlock));
-  std::vector<float> means;
   std::size_t chosen = random.below(static_cast<std::uint32_t>(sample_count));
+  const auto has_weight = [&](std::size_t s) {
+    return point_weights.empty() || point_weights[points[s]] > 0.0f;
+  };
+  for (std::size_t tries = 0; !has_weight(chosen) && tries < sample_count; ++tries) {
+    chosen = (chosen + 1) % sample_count;
+  }
+  std::vector<float> means;
   for (std::size_t k = 0; k < cluster_count; ++k) {
     const float* mean = &sample[chosen * stride];
     means.insert(means.end(), mean, mean + dimension);
     parallel_for(sample_count, kBlock, [&](std::size_t begin, std::size_t end) {
-      block_sums[begin / kBlock] =
-          lower(&sample[begin * stride], stride, mean, &distances[begin], end - begin);
+      double& sum = block_sums[begin / kBlock];
+      sum = lower(&sample[begin * stride], stride, mean, &distances[begin], end - begin);
+      if (chances.empty()) return;
+      sum = 0.0;
+      for (std::size_t s = begin; s < end; ++s) {
+        sum += chances[s] = double{point_weights[points[s]]} * distances[s];
+      }
     });
-    chosen = draw(distances, block_sums, random);
+    chosen = draw(chances.empty() ? distances : chances, block_sums, random);
   }
   return means;
 }

@@ -40,7 +40,8 @@ Encoded encode_static(std::span<const float> signal, int dimension, const Option
   StageClock clock(encoded.stages);
   std::vector<float> means =
       options.start.labels.empty()
-          ? seed_means(signal, n, static_cast<std::size_t>(options.cluster_count), options.seed)
+          ? seed_means(signal, n, static_cast<std::size_t>(options.cluster_count), options.seed,
+                       options.point_weights)
           : fit_means(signal, n, options.start.labels,
                       static_cast<std::size_t>(options.cluster_count), options.point_weights);
   clock.finish("seeding");

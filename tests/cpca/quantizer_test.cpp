@@ -158,6 +158,19 @@ TEST(Seeding, FindsEveryFarGroup) {
   }
 }
 
+TEST(Seeding, TakesNoPointThatWeighsNothing) {
+  std::vector<float> signal, weights;
+  for (int p = 0; p < 1200; ++p) {  // of two blocks in the first only one in a hundred weighs
+    signal.push_back(static_cast<float>(p));
+    weights.push_back(p >= 600 || p % 100 == 50 ? 1.0f : 0.0f);
+  }
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    for (const float mean : seed_means(signal, 1, 20, seed, weights)) {
+      EXPECT_GT(weights[static_cast<std::size_t>(mean)], 0.0f) << mean;
+    }
+  }
+}
+
 TEST(Seeding, DependsOnTheSeedAndNotOnThreads) {
   const auto signal = make_signal(5000, 25);
   set_thread_count(1);
