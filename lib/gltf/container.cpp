@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/checked.h"
@@ -161,6 +162,17 @@ void load_buffers(State& state, const Chunks& chunks, Fetcher& fetcher) {
   }
 }
 
+/// Whether an image may be of that type, which glTF or an extension that the file uses names.
+bool is_allowed(const Json& root, const std::string& type) {
+  const Json* used = find(root, "extensionsUsed");
+  const auto uses = [&](const char* name) {
+    return used && std::find(used->begin(), used->end(), Json(name)) != used->end();
+  };
+  if (type == "image/webp") return uses("EXT_texture_webp");
+  if (type == "image/ktx2") return uses("KHR_texture_basisu");
+  return !type.empty();
+}
+
 void load_images(State& state, Fetcher& fetcher) {
   if (!state.root.contains("images")) return;
   for (std::size_t i = 0; i < state.root["images"].size(); ++i) {
@@ -169,7 +181,7 @@ void load_images(State& state, Fetcher& fetcher) {
     if (!image.contains("uri")) continue;
     Bytes bytes = fetcher.fetch(optional_string(image, "uri", where), where);
     const std::string type = image_mime_type(bytes);
-    if (type.empty()) {
+    if (!is_allowed(state.root, type)) {
       throw_bad_input("not an image that glTF knows",
                       {.file = state.file, .element = where.element, .expected = "PNG or JPEG"});
     }
@@ -221,7 +233,9 @@ std::string image_mime_type(std::span<const std::byte> bytes) {
   if (starts_with(bytes, "\x89PNG\r\n\x1a\n")) return "image/png";
   if (starts_with(bytes, "\xff\xd8\xff")) return "image/jpeg";
   if (starts_with(bytes, "\xabKTX 20\xbb")) return "image/ktx2";
-  if (starts_with(bytes, "RIFF")) return "image/webp";
+  if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP")) {
+    return "image/webp";
+  }
   return {};
 }
 

@@ -80,6 +80,19 @@ TEST(GltfRead, RejectsImageViewThatDoesNotExistOrRunsPastItsBuffer) {
   EXPECT_ERROR(json, "bufferView 2: runs past the end of its buffer");
 }
 
+TEST(GltfRead, RejectsImagesOfTypesThatTheFileDoesNotName) {
+  // "RIFF....WEBP", "RIFF....WAVE"
+  const std::string webp = "data:application/octet-stream;base64,UklGRgAAAABXRUJQ";
+  const std::string wave = "data:application/octet-stream;base64,UklGRgAAAABXQVZF";
+  EXPECT_ERROR(with("/images", {{{"uri", webp}}}), "image 0: not an image that glTF knows");
+  ordered_json json = with("/images", {{{"uri", wave}}});
+  json["extensionsUsed"] = {"EXT_texture_webp"};
+  EXPECT_ERROR(json, "image 0: not an image that glTF knows");
+  json = with("/images", {{{"uri", webp}}});
+  json["extensionsUsed"] = {"EXT_texture_webp"};
+  EXPECT_NO_THROW(parse(json));
+}
+
 TEST(GltfRead, ImagesShareALimitOfPixelsAndAreDecodedOnce) {
   mesh::Scene scene = samples::scene();  // a texture of 2 x 2 pixels
   scene.images.push_back(scene.images[0]);
