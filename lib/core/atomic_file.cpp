@@ -116,6 +116,14 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   throw_failed(what + ": " + std::strerror(errno), {.file = path.string()});
 }
 
+/// So that a new name in it lasts. Folders of some file systems cannot be synced: as good as none.
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path, bool no_clobber)
@@ -164,10 +172,11 @@ void AtomicFile::commit() {
   if (!synced) throw_system("writing failed", path_);
   if (no_clobber_) {
     if (link(temporary_.c_str(), path_.c_str()) != 0) throw_system("not overwriting", path_);
-    return;  // the destructor removes the temporary name
+  } else {
+    if (rename(temporary_.c_str(), path_.c_str()) != 0) throw_system("cannot rename", path_);
+    temporary_.clear();
   }
-  if (rename(temporary_.c_str(), path_.c_str()) != 0) throw_system("cannot rename", path_);
-  temporary_.clear();
+  sync_folder(folder_of(path_));  // the destructor removes a temporary name that is left
 }
 
 void check_output(const std::filesystem::path& path, bool no_clobber) {
