@@ -154,7 +154,15 @@ class EmbreeEngine final : public Engine {
 
 }  // namespace
 
-std::string embree_version() { return RTC_VERSION_STRING; }
+std::string embree_version() {
+  const Device device(rtcNewDevice(nullptr));
+  const auto number = [&](RTCDeviceProperty property) {
+    return rtcGetDeviceProperty(device.get(), property);
+  };
+  return fmt::format("{}.{}.{}", number(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                     number(RTC_DEVICE_PROPERTY_VERSION_MINOR),
+                     number(RTC_DEVICE_PROPERTY_VERSION_PATCH));
+}
 
 std::unique_ptr<Engine> make_embree_engine(const Triangles& triangles) {
   check_triangles(triangles);
