@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "image/false_color.h"
 #include "inspect/canvas.h"
 #include "inspect/statistics.h"
@@ -25,6 +26,10 @@ void check_size(const char* name, const image::Image& image, const image::Image&
                                         image.channel_count),
                    .expected = fmt::format("{} x {} pixels, {} channels or more", reference.width,
                                            reference.height, least_channels)});
+}
+
+bool is_radiance(const std::filesystem::path& path) {
+  return path.extension() == ".exr" || path.extension() == ".hdr";
 }
 
 bool counts(const ComparisonInput& input, int x, int y) {
@@ -147,6 +152,10 @@ void compare_files(const ComparisonFiles& files, bool no_clobber, Report& report
     report.add_input(path);
     return image::read_image(path);
   };
+  if (is_radiance(files.image) != is_radiance(files.reference)) {
+    log::warning("{} and {}: one is radiance, the other was tone mapped: they differ by that alone",
+                 files.image.string(), files.reference.string());
+  }
   ComparisonInput input{read(files.image), read(files.reference), {}, {}};
   if (!files.mask.empty()) input.mask = read(files.mask);
   if (!files.noise.empty()) input.noise = read(files.noise);

@@ -48,7 +48,8 @@ std::vector<double> counts_up_to(int most) {
 
 LinePlot error_over_storage(const signal::TransferSignal& signal) {
   const auto point_count = static_cast<int>(signal.vertex_count());
-  const int most = std::clamp(point_count / 32, 1, kMostClusters);
+  int most = 1;
+  while (4 * most <= std::min(point_count / 32, kMostClusters)) most *= 4;
   LinePlot plot{
       .title = fmt::format(
           "Squared error over storage, static CPCA of 1, 4, 16 ... clusters up to {}", most),

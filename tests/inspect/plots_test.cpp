@@ -68,6 +68,7 @@ double static_error(const signal::TransferSignal& signal, int clusters, int comp
 TEST(EncodingStudy, ErrorOverStorageIsThatOfEncodingEachTime) {
   const signal::TransferSignal signal = smooth_signal(640);
   const LinePlot plot = error_over_storage(signal);
+  EXPECT_TRUE(plot.title.ends_with("up to 16")) << plot.title;
   ASSERT_EQ(plot.series.size(), 5u);  // n' = 16 is more than there are coefficients
   const int counts[] = {0, 1, 2, 4, 8};
   for (std::size_t s = 0; s < 5; ++s) {
