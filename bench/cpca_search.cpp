@@ -1,19 +1,24 @@
-// How near the search for --max-error comes to the least cost, and what it takes:
-//   bench_cpca_search signal.npy|signal.transfer.exr max_error [rmse|max]
-// Beside it every number of vectors that could be better is encoded at full strength: with as many
-// clusters as fit the least bytes so far, and when these are within the bound, with fewer and fewer
-// until log error can be interpolated in log clusters. From the vectors of the search it goes on to
-// fewer and to more of them until two in turn bring nothing. Under max these are encodings as they
-// come; then with one and two vectors fewer and more, and with clusters for 0.7 and 0.85 of the
-// search's bytes, encodings are tightened as the search does it.
+// How near the search comes to the least cost, and what it takes:
+//   bench_cpca_search signal.npy|signal.transfer.exr BOUND [rmse|max|bytes [METHOD [alone]]]
+// BOUND is a relative error or, of bytes, a size; METHOD iterative, adaptive or static. The choice
+// that the search keeps is encoded once more from seeds, under max tightened as the search does it:
+// what it costs who knows the right numbers.
+//
+// Then, unless it is to be alone, every number of vectors that could be better is encoded at full
+// strength: with as many clusters as fit the least bytes so far, and when these are within the
+// error, with fewer and fewer until log error can be interpolated in log clusters. From the vectors
+// of the search it goes on to fewer and to more of them until two in turn bring nothing. Under max
+// encodings with up to two vectors fewer and more, with clusters for 0.7 and 0.85 of the search's
+// bytes, are tightened.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
+#include <string_view>
 
+#include "core/stopwatch.h"
 #include "cpca/search.h"
 #include "cpca/search_survey.h"
 #include "cpca/tighten.h"
@@ -42,52 +47,76 @@ signal::Matrix read(const std::filesystem::path& path) {
 
 class Comparison {
  public:
-  Comparison(const signal::Matrix& signal, const cpca::Bound& bound)
-      : signal_(signal), bound_(bound), size_{signal.row_count, signal.column_count} {}
+  Comparison(const signal::Matrix& signal, cpca::Method method, const cpca::Bound& bound)
+      : signal_(signal),
+        method_(method),
+        bound_(bound),
+        size_{signal.row_count, signal.column_count},
+        is_tight_(bound.max_error && bound.norm == cpca::Norm::maximum) {}
 
-  /// Returns the bytes of the search over the least that were found, by any way.
-  double run() {
+  void search() {
     const auto dimension = static_cast<int>(size_.dimension);
-    const cpca::Found found =
-        cpca::encode_within(bound_, cpca::Method::iterative, signal_.values, dimension, {});
-    print(found);
-    const int components = found.encoded.encoding.component_count;
-    const std::size_t bytes = bound_.cost.bytes(found.encoded.encoding);
-    best_ = {found.encoded.encoding.cluster_count, components};
-    least_ = bytes;
-    try_out(components);
-    for (const int step : {-1, 1}) {
-      for (int i = components + step, idle = 0; i >= 0 && i <= dimension && idle < kPatience;
-           i += step) {
-        idle = try_out(i) ? 0 : idle + 1;
-      }
-    }
-    if (bound_.norm == cpca::Norm::maximum) {
-      for (int i = std::max(0, components - 2); i <= std::min(dimension, components + 2); ++i) {
-        for (const double share : {0.7, 0.85}) try_tightened(i, share * static_cast<double>(bytes));
-      }
-    }
-    return static_cast<double>(bytes) / static_cast<double>(least_);
-  }
-
-  const cpca::Choice& best() const { return best_; }
-  std::size_t least() const { return least_; }
-
- private:
-  static void print(const cpca::Found& found) {
-    for (const cpca::Trial& trial : found.trials) {
-      fmt::print("  tried: {} clusters, {} components: error {:.5f}, {} bytes, {:.2f} s{}\n",
-                 trial.choice.cluster_count, trial.choice.component_count, trial.error, trial.bytes,
-                 trial.seconds, trial.is_warm ? ", warm" : "");
-    }
-    fmt::print("search: {:.2f} s, {:.2f} encodings' time, {:.2f} of their products\n",
-               found.seconds, found.cost, found.flops_cost);
+    const cpca::Found found = cpca::encode_within(bound_, method_, signal_.values, dimension, {});
+    for (const cpca::Trial& trial : found.trials) print(trial);
+    const cpca::Trial& kept = found.trials[found.kept];
+    best_ = kept.choice;
+    worth_ = least_ = worth(kept);
+    const Stopwatch stopwatch;
+    const cpca::Encoded alone = encode({kept.first_clusters, kept.choice.component_count});
+    const double seconds = stopwatch.seconds();
+    fmt::print(
+        "search: {} clusters, {} components, {}; {:.2f} s; said to be {:.2f} encodings, {:.2f} of "
+        "their products; encoded alone {:.2f} s: {:.2f}, {:.2f}\n",
+        best_.cluster_count, best_.component_count, worth_, found.seconds, found.cost(),
+        found.flops_cost(), seconds, found.seconds / seconds, found.encoded.flops / alone.flops);
     std::fflush(stdout);
   }
 
+  void look_beside() {
+    const int found = best_.component_count, most = static_cast<int>(size_.dimension);
+    const double bytes = static_cast<double>(bound_.cost.bytes(size_, best_));
+    try_out(found);
+    for (const int step : {-1, 1}) {
+      for (int i = found + step, idle = 0; i >= 0 && i <= most && idle < kPatience; i += step) {
+        idle = try_out(i) ? 0 : idle + 1;
+      }
+    }
+    for (int i = std::max(0, found - 2); is_tight_ && i <= std::min(most, found + 2); ++i) {
+      for (const double share : {0.7, 0.85}) try_tightened(i, share * bytes);
+    }
+    fmt::print("best: {} clusters, {} components: {}; the search takes {:+.1f}%\n",
+               best_.cluster_count, best_.component_count, least_, 100.0 * (worth_ / least_ - 1.0));
+  }
+
+ private:
+  static void print(const cpca::Trial& trial) {
+    fmt::print("  tried: {} clusters, {} components: error {:.5f}, {} bytes, {:.2f} s{}\n",
+               trial.choice.cluster_count, trial.choice.component_count, trial.error, trial.bytes,
+               trial.seconds, trial.is_warm ? ", warm" : "");
+  }
+
+  /// Less is better.
+  double worth(const cpca::Trial& trial) const {
+    return bound_.max_error ? static_cast<double>(trial.bytes) : trial.error;
+  }
+
+  cpca::Encoded encode(const cpca::Choice& choice) const {
+    cpca::Options options{.cluster_count = choice.cluster_count,
+                          .component_count = choice.component_count};
+    options.max_component_count = 2 * choice.component_count;
+    cpca::Encoded encoded =
+        cpca::encode(method_, signal_.values, static_cast<int>(size_.dimension), options);
+    if (!is_tight_) return encoded;
+    const double energy = cpca::weighted_energy(signal_.values, size_.point_count, {});
+    const double point_energy = energy / static_cast<double>(size_.point_count);
+    cpca::tighten(signal_.values, *bound_.max_error * *bound_.max_error * point_energy,
+                  cpca::most_clusters(size_.point_count), options, encoded);
+    return encoded;
+  }
+
   double error(const cpca::Choice& choice) const {
-    const cpca::Encoded encoded = cpca::encode_iterative(
-        signal_.values, static_cast<int>(size_.dimension),
+    const cpca::Encoded encoded = cpca::encode(
+        method_, signal_.values, static_cast<int>(size_.dimension),
         {.cluster_count = choice.cluster_count, .component_count = choice.component_count});
     const double error = cpca::relative_error(encoded.encoding, signal_.values, bound_.norm);
     fmt::print("  beside: {} clusters, {} components: error {:.5f}\n", choice.cluster_count,
@@ -97,9 +126,9 @@ class Comparison {
   }
 
   /// The most clusters with so many vectors that take no more than that; 0: none do.
-  int most_clusters(int components, std::size_t max_bytes) const {
+  int most_clusters(int components, double max_bytes) const {
     const auto bytes = [&](int clusters) {
-      return bound_.cost.bytes(size_, {clusters, components});
+      return static_cast<double>(bound_.cost.bytes(size_, {clusters, components}));
     };
     if (bytes(1) > max_bytes) return 0;
     const auto more = static_cast<int>((max_bytes - bytes(1)) / (bytes(2) - bytes(1)));
@@ -126,60 +155,74 @@ class Comparison {
   }
 
   void try_tightened(int components, double bytes) {
-    const int start = most_clusters(components, static_cast<std::size_t>(bytes));
+    const int start = most_clusters(components, bytes);
     if (start == 0) return;
-    const cpca::Options options{.cluster_count = start, .component_count = components};
-    cpca::Encoded encoded =
-        cpca::encode_iterative(signal_.values, static_cast<int>(size_.dimension), options);
-    const double energy = cpca::weighted_energy(signal_.values, size_.point_count, {});
-    cpca::tighten(
-        signal_.values,
-        *bound_.max_error * *bound_.max_error * energy / static_cast<double>(size_.point_count),
-        cpca::most_clusters(size_.point_count), options, encoded);
-    const cpca::Choice found{encoded.encoding.cluster_count, components};
-    const std::size_t taken = bound_.cost.bytes(size_, found);
+    const cpca::Encoding encoding = encode({start, components}).encoding;
+    const double taken = static_cast<double>(bound_.cost.bytes(encoding));
     fmt::print("  tightened from {}: {} clusters, {} components: {} bytes\n", start,
-               found.cluster_count, components, taken);
+               encoding.cluster_count, components, taken);
     std::fflush(stdout);
-    if (taken >= least_) return;
-    best_ = found;
-    least_ = taken;
+    take({encoding.cluster_count, components}, taken);
   }
 
-  /// Whether so many vectors take less bytes than those before.
+  /// Whether so many vectors are better than those before.
   bool try_out(int components) {
-    const int most = most_clusters(components, least_);
+    const int most = most_clusters(
+        components, bound_.max_error ? least_ : static_cast<double>(*bound_.max_bytes));
     if (most == 0) return false;
+    if (bound_.max_bytes) return take({most, components}, error({most, components}));
     const std::optional<int> fewest = fewest_clusters(components, most);
     if (!fewest) return false;
-    const std::size_t bytes = bound_.cost.bytes(size_, {*fewest, components});
-    if (bytes >= least_) return false;
-    best_ = {*fewest, components};
-    least_ = bytes;
+    const cpca::Choice choice{*fewest, components};
+    return take(choice, static_cast<double>(bound_.cost.bytes(size_, choice)));
+  }
+
+  bool take(const cpca::Choice& choice, double worth) {
+    if (worth >= least_) return false;
+    best_ = choice;
+    least_ = worth;
     return true;
   }
 
   const signal::Matrix& signal_;
+  const cpca::Method method_;
   const cpca::Bound bound_;
   const cpca::Size size_;
+  const bool is_tight_;
   cpca::Choice best_;
-  std::size_t least_ = 0;
+  double worth_ = 0.0, least_ = 0.0;  ///< bytes, or error within bytes: of the search, of all
 };
+
+cpca::Method method_named(std::string_view name) {
+  return name == "static"     ? cpca::Method::fixed
+         : name == "adaptive" ? cpca::Method::adaptive
+                              : cpca::Method::iterative;
+}
+
+cpca::Bound bound_of(std::string_view kind, double value) {
+  cpca::Bound bound;
+  if (kind == "bytes") {
+    bound.max_bytes = static_cast<std::size_t>(value);
+  } else {
+    bound.max_error = value;
+  }
+  if (kind == "max") bound.norm = cpca::Norm::maximum;
+  return bound;
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  const auto argument = [&](int i) { return std::string_view(i < argc ? argv[i] : ""); };
   if (argc < 3) {
-    fmt::print(stderr, "bench_cpca_search signal.npy|signal.transfer.exr max_error [rmse|max]\n");
+    fmt::print(stderr,
+               "bench_cpca_search signal.npy|signal.transfer.exr BOUND [rmse|max|bytes "
+               "[METHOD [alone]]]\n");
     return 2;
   }
-  const bool is_max = argc > 3 && std::strcmp(argv[3], "max") == 0;
   const signal::Matrix signal = read(argv[1]);
-  Comparison comparison(signal, {.max_error = std::atof(argv[2]),
-                                 .norm = is_max ? cpca::Norm::maximum : cpca::Norm::rmse,
-                                 .max_bytes = {}});
-  const double share = comparison.run();
-  fmt::print("best: {} clusters, {} components: {} bytes; the search takes {:+.1f}%\n",
-             comparison.best().cluster_count, comparison.best().component_count, comparison.least(),
-             100.0 * (share - 1.0));
+  Comparison comparison(signal, method_named(argument(4)),
+                        bound_of(argument(3), std::atof(argv[2])));
+  comparison.search();
+  if (argument(5) != "alone") comparison.look_beside();
 }

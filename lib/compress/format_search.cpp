@@ -61,9 +61,9 @@ class FormatSearch {
   FormatSearch(const Job& job, const Input& input, const cpca::Options& options, Report& report)
       : job_(job),
         input_(input),
-        options_(options),
         json_(report.json()),
-        size_{input.transfer.values.size() / input.dimension, input.dimension} {
+        size_{input.transfer.values.size() / input.dimension, input.dimension},
+        search_(method_of(job), input.transfer.values, static_cast<int>(input.dimension), options) {
     json_["search_cost"] = 0.0;
     json_["search"] = {{"sampled_points", 0},
                        {"seconds", 0.0},
@@ -75,6 +75,7 @@ class FormatSearch {
     std::exception_ptr failure;
     for (const WeightFormat format : formats()) {
       std::optional<Candidate> candidate;
+      if (best_ && !is_lucky() && !search_.can_afford(best_->found)) break;
       try {
         candidate = search(format);
       } catch (const Error&) {  // another format may still do
@@ -85,24 +86,27 @@ class FormatSearch {
       if (!best_ ||
           std::tie(candidate->worth, candidate->next) < std::tie(best_->worth, best_->next))
         best_ = std::move(candidate);
-      // In as many bytes static encodings of as fine weights differ by luck: one more is taken.
-      const bool is_lucky = job_.method == "static" && job_.bound.max_bytes;
-      if (is_fine && !(is_lucky && format == WeightFormat::unorm8)) break;
+      if (is_fine && !(is_lucky() && format == WeightFormat::unorm8)) break;
     }
     if (!best_ && !std::isfinite(least_error_)) std::rethrow_exception(failure);
     if (!best_) reject_rounding();
-    log::info("the search took as long as {:.2f} encodings", json_["search_cost"].get<double>());
-    best_->result.encoded.stages = std::move(stages_);
-    best_->result.encoded.flops = flops_;
+    cpca::Found& found = best_->found;
+    search_.add_up(found);
+    tell(found);
+    best_->result.encoded = std::move(found.encoded);
     return std::move(best_->result);
   }
 
  private:
   struct Candidate {
-    Result result;
+    cpca::Found found;
+    Result result = {};              ///< without the encoding
     double worth = 0.0, next = 0.0;  ///< less is better
     bool is_fine = false;            ///< finer weights are not worth their bytes
   };
+
+  /// In as many bytes static encodings of as fine weights differ by luck: one more is taken.
+  bool is_lucky() const { return job_.method == "static" && job_.bound.max_bytes; }
 
   /// The smallest first.
   std::vector<WeightFormat> formats() const {
@@ -138,9 +142,9 @@ class FormatSearch {
     double reserve = format == WeightFormat::float32 ? 4.0 * kMargin : cpca::kMaxAddedError;
     while (reserve < kMostReserve) {
       const cpca::Bound bound = this->bound(format, reserve);
-      options_.checkpoint->begin_part(part_++);
-      Candidate candidate{{.encoded = encode(bound, format), .weights = {}, .reserve = reserve}};
-      const cpca::Encoding& encoding = candidate.result.encoded.encoding;
+      Candidate candidate{.found = find(bound, format)};
+      candidate.result.reserve = reserve;
+      const cpca::Encoding& encoding = candidate.found.encoded.encoding;
       if (input_.document) candidate.result.weights = format;
       cpca::Encoding stored = encoding;
       cpca::convert_weights(format, stored);
@@ -174,9 +178,10 @@ class FormatSearch {
                                 input_.point_weights);
   }
 
-  cpca::Encoded encode(const cpca::Bound& bound, WeightFormat format) {
-    cpca::Found found = cpca::encode_within(bound, method_of(job_), input_.transfer.values,
-                                            static_cast<int>(input_.dimension), options_);
+  cpca::Found find(const cpca::Bound& bound, WeightFormat format) {
+    const bool is_first = is_lucky() && format == WeightFormat::unorm8 && !job_.storage.weights;
+    const double left = is_first ? 1.0 : 0.0;  // an encoding for the other format
+    cpca::Found found = search_.find(bound, cpca::kMostSearchCost - left);
     for (const cpca::Trial& trial : found.trials) {
       nlohmann::ordered_json row = {{"cluster_count", trial.choice.cluster_count},
                                     {"component_count", trial.choice.component_count},
@@ -188,30 +193,25 @@ class FormatSearch {
       if (input_.document) row["weights"] = cpca::name_of(format);
       json_["search"]["trials"].push_back(row);
     }
-    const auto add = [](nlohmann::ordered_json& sum, double part) {
-      sum = sum.get<double>() + part;
-    };
+    return found;
+  }
+
+  void tell(const cpca::Found& found) const {
     json_["search"]["sampled_points"] = found.sampled_count;
-    add(json_["search"]["seconds"], found.seconds);
-    add(json_["search"]["flops_cost"], found.flops_cost);
-    add(json_["search_cost"], found.cost);
-    const auto& stages = found.encoded.stages;
-    stages_.insert(stages_.end(), stages.begin(), stages.end());
-    flops_ += found.encoded.flops;
-    return std::move(found.encoded);
+    json_["search"]["seconds"] = found.seconds;
+    json_["search"]["flops_cost"] = found.flops_cost();
+    json_["search_cost"] = found.cost();
+    log::info("the search took as long as {:.2f} encodings", found.cost());
   }
 
   const Job& job_;
   const Input& input_;
-  const cpca::Options& options_;
   nlohmann::ordered_json& json_;
   const cpca::Size size_;
+  cpca::Search search_;
   std::optional<Candidate> best_;
-  std::uint32_t part_ = 0;
   /// Of those that weights as they are stored took beyond max_error.
   double least_error_ = std::numeric_limits<double>::infinity();
-  std::vector<cpca::Stage> stages_;
-  double flops_ = 0.0;
 };
 
 /// Once, for weights as small as they may be.

@@ -3,9 +3,16 @@
 //
 // A survey of a sample of the points (cpca/search_survey.h) predicts the error of every choice
 // (cpca/search_model.h). The best is encoded at full strength. What comes out corrects the
-// prediction, and the next encodings, if any, start from the clusters of the one before.
+// prediction, and the next encodings, if any, start from seeds or from the clusters of the one
+// before.
+//
+// All this takes about three encodings at most, in the unit of cpca/search_cost.h: what the kept
+// choice would have taken alone, from seeds to the bound. The survey stops where another part of it
+// would take more than its share; once something is within the bound, what would lead beyond three
+// is not tried.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,9 +21,14 @@
 
 namespace prt::cpca {
 
+/// Encodings that a search which may stop is not expected to take more than: a little less than
+/// three, as the next one may take more than expected.
+constexpr double kMostSearchCost = 2.85;
+
 /// An encoding that was made on the way.
 struct Trial {
   Choice choice;
+  int first_clusters = 0;   ///< before it was tightened
   double error = 0.0;       ///< relative, by the norm of the bound
   std::size_t bytes = 0;    ///< by the cost of the bound
   bool is_warm = false;     ///< started from the one before
@@ -26,19 +38,45 @@ struct Trial {
 
 struct Found {
   Encoded encoded;
+  std::size_t kept = 0;           ///< the trial that it is
   std::size_t sampled_count = 0;  ///< points of the survey
   std::vector<Trial> trials;
   double seconds = 0.0;  ///< survey and trials
-  /// Seconds over those of the last trial that started from seeds: how many encodings all took.
-  double cost = 0.0;
-  /// The same in products of points with means and vectors, which machines do not change; 0 for
-  /// Method::fixed, which does not count them.
-  double flops_cost = 0.0;
+  /// Of the kept choice alone, from seeds to the bound: as measured, or if it started from the
+  /// clusters of another, as told from that.
+  double alone_seconds = 0.0, alone_flops = 0.0;
+
+  /// How many encodings all took, by seconds, and by products, which machines do not change.
+  double cost() const { return seconds / alone_seconds; }
+  double flops_cost() const { return encoded.flops / alone_flops; }
 };
 
-/// The encoding of least bytes that keeps to max_error, or of least error that keeps to
-/// max_bytes, as far as the search finds it. Counts in `options` are not used. Errors are weighted
-/// with its point weights. Throws Error (failed) when it finds none.
+class Search {
+ public:
+  /// Counts in `options` are not used. Errors are weighted with its point weights. Throws as
+  /// check_options and check_signal.
+  Search(Method method, std::span<const float> signal, int dimension, const Options& options);
+  ~Search();
+
+  /// The encoding of least bytes that keeps to max_error, or of least error that keeps to
+  /// max_bytes, as far as the search finds it. Another call, with a bound that differs little,
+  /// knows what the survey and the trials before told: seconds, flops and stages add up, and count
+  /// against its budget, `most_cost` encodings. Throws Error (failed) when it finds none.
+  Found find(const Bound& bound, double most_cost = kMostSearchCost);
+
+  /// Makes seconds, flops and stages of `found` those of all that was done since.
+  void add_up(Found& found) const;
+
+  /// Whether another trial, like the last, still leaves it within kMostSearchCost encodings of
+  /// `found`.
+  bool can_afford(const Found& found) const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+/// Of a search for one bound.
 Found encode_within(const Bound& bound, Method method, std::span<const float> signal, int dimension,
                     const Options& options);
 

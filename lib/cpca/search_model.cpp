@@ -109,6 +109,13 @@ void ErrorModel::correct(const Choice& choice, double error) {
   for (double& known : shifts_) known += shift;
 }
 
+void ErrorModel::correct_alone(const Choice& choice, double error) {
+  const auto count = static_cast<std::size_t>(choice.component_count) + 1;
+  if (shifts_.empty()) shifts_.assign(1, 0.0);
+  while (shifts_.size() <= count) shifts_.push_back(shifts_.back());
+  shifts_[count - 1] += log_of(error) - log_error(choice);
+}
+
 Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int most_clusters) {
   const int most_components = std::min({static_cast<int>(size.dimension),
                                         aim.cost.max_component_count, model.most_components() + 2});
@@ -141,6 +148,24 @@ Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int m
                   .expected = fmt::format("at most {}", aim.max_bytes.value_or(0))});
   }
   return best ? best->choice : closest->choice;
+}
+
+std::optional<Choice> choose_most(const Bound& aim, const Size& size, int most_clusters,
+                                  int component_count) {
+  if (component_count < 0 ||
+      component_count > std::min(static_cast<int>(size.dimension), aim.cost.max_component_count)) {
+    return std::nullopt;
+  }
+  const int most = most_clusters_within(aim, size, component_count, most_clusters);
+  return most > 0 ? std::optional(Choice{most, component_count}) : std::nullopt;
+}
+
+std::optional<Choice> choose_clusters(const ErrorModel& model, const Bound& aim, const Size& size,
+                                      int most_clusters, int component_count) {
+  const auto most = choose_most(aim, size, most_clusters, component_count);
+  if (!most) return std::nullopt;
+  const auto fewest = fewest_clusters(model, component_count, *aim.max_error, most->cluster_count);
+  return fewest ? std::optional(Choice{*fewest, component_count}) : std::nullopt;
 }
 
 }  // namespace prt::cpca

@@ -6,6 +6,7 @@
 // clusters, for each number of vectors.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,14 +28,14 @@ class ErrorModel {
   double error(const Choice& choice) const;
   /// Vectors of the longest column.
   int most_components() const;
-  int least_clusters() const { return columns_.front().cluster_count; }
   int most_clusters() const { return columns_.back().cluster_count; }
 
   /// Shifts predictions so that those of the column come true, for as many vectors as it has, and
   /// the rest like its last.
   void correct(const Column& measured);
-  /// Shifts all alike.
+  /// Shifts all alike, or only those with as many vectors.
   void correct(const Choice& choice, double error);
+  void correct_alone(const Choice& choice, double error);
 
  private:
   double column_value(std::size_t column, std::size_t components) const;
@@ -49,5 +50,14 @@ class ErrorModel {
 /// the one of least error. At most `most_clusters`. Throws Error (failed) when nothing is as small
 /// as max_bytes.
 Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int most_clusters);
+
+/// The fewest clusters with so many vectors of predicted error <= aim.max_error; nothing if there
+/// are none, or the vectors are more than there can be.
+std::optional<Choice> choose_clusters(const ErrorModel& model, const Bound& aim, const Size& size,
+                                      int most_clusters, int component_count);
+
+/// The most clusters with so many vectors within aim.max_bytes, likewise.
+std::optional<Choice> choose_most(const Bound& aim, const Size& size, int most_clusters,
+                                  int component_count);
 
 }  // namespace prt::cpca

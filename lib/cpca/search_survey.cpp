@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "cpca/iterative_encoder.h"
 #include "cpca/kept.h"
+#include "cpca/search_cost.h"
 
 namespace prt::cpca {
 
@@ -16,7 +17,12 @@ namespace {
 
 constexpr int kIterations = 4, kStep = 4, kMostColumns = 4;
 /// One point of so many is in the sample, but so many at least.
-constexpr std::size_t kSampleShare = 4, kLeastSample = 4096;
+constexpr std::size_t kSampleShare = 4, kLeastSample = 128;
+/// Of one encoding: what the survey may take before another column.
+constexpr double kMostCost = 0.75;
+/// More coefficients than that are not taken apart for one cluster with all vectors: eigenvectors
+/// take the cube of them.
+constexpr int kMostWhole = 256;
 /// Points of a cluster of the sample, at least; and per vector and mean.
 constexpr std::size_t kPointsPerCluster = 6;
 constexpr double kPointsPerVector = 1.7;
@@ -76,13 +82,14 @@ class Surveyor {
         sample_(sample),
         dimension_(dimension),
         size_{sample.all_count, static_cast<std::size_t>(dimension)},
+        iterations_(options.iterations),
         options_(options),
         checkpoint_(options.checkpoint) {
     options_.point_weights = sample.point_weights;
     options_.iterations = std::min(options.iterations, kIterations);
     options_.checkpoint = nullptr;  // whole columns are kept
-    // More than the signal is never worth it.
-    most_bytes_ = bound.max_bytes.value_or(sample.all_count * size_.dimension * sizeof(float));
+    // What a few points need may exceed the signal once.
+    most_bytes_ = bound.max_bytes.value_or(2 * sample.all_count * size_.dimension * sizeof(float));
   }
 
   Column encode(int cluster_count) {
@@ -95,9 +102,13 @@ class Surveyor {
       archive.value(flops_);
     };
     if (!restore_state(checkpoint_, name, members)) {
-      column = method_ == Method::fixed ? encode_fixed() : encode_iteratively();
+      // Of one cluster the static method makes the same.
+      const bool is_fixed = method_ == Method::fixed || cluster_count == 1;
+      column = is_fixed ? encode_fixed() : encode_iteratively();
       store_state(checkpoint_, name, members);
     }
+    const Choice last{cluster_count, static_cast<int>(column.errors.size()) - 1};
+    if (cluster_count > 1) work_ += work(last);
     for (std::size_t i = 0; bound_.max_error && i < column.errors.size(); ++i) {
       if (column.errors[i] > *bound_.max_error) continue;
       most_bytes_ =
@@ -108,7 +119,23 @@ class Surveyor {
 
   double flops() const { return flops_; }
 
+  /// Whether another column leaves the survey within its share of what is to be encoded.
+  bool can_afford(const ErrorModel& model, int cluster_count, const Choice& wanted) const {
+    Choice last{cluster_count, 0};
+    const int most = most_components(cluster_count);
+    while (last.component_count < most &&
+           (!bound_.max_error || model.error(last) > *bound_.max_error)) {
+      ++last.component_count;
+    }
+    return work_ + work(last) <= kMostCost * encoding_work(method_, size_, wanted, iterations_);
+  }
+
  private:
+  double work(const Choice& last) const {
+    const Method method = method_ == Method::fixed ? method_ : Method::iterative;
+    return encoding_work(method, {sample_.count, size_.dimension}, last, options_.iterations);
+  }
+
   /// As many as fit the bytes and the sample has points for.
   int most_components(int cluster_count) const {
     int most = std::min(dimension_, bound_.cost.max_component_count);
@@ -172,11 +199,12 @@ class Surveyor {
   const Sample& sample_;
   const int dimension_;
   const Size size_;
+  const int iterations_;  ///< of the encoding
   Options options_;
   Checkpoint* const checkpoint_;
   std::uint32_t column_count_ = 0;
   std::size_t most_bytes_ = 0;
-  double flops_ = 0.0;
+  double flops_ = 0.0, work_ = 0.0;  ///< done; encoding_work of columns
 };
 
 }  // namespace
@@ -198,23 +226,25 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
   Survey survey;
   survey.sampled_count = sample.count;
   const auto add = [&](int count) { survey.model.add(surveyor.encode(count)); };
-  int low = static_cast<int>(std::clamp<std::size_t>(few, 1, static_cast<std::size_t>(most)));
-  add(low);
+  if (dimension <= kMostWhole || most == 1) add(1);
+  const int least = dimension <= kMostWhole ? 2 : 1;  // of other columns
+  int low = std::clamp(static_cast<int>(std::min<std::size_t>(few, kMostClusters)),
+                       std::min(least, most), most);
+  if (most > 1) add(low);
   int high = low;
-  for (int column = 1; column < kMostColumns; ++column) {
-    const int wanted =
-        choose(survey.model, bound, {sample.all_count, n}, most_clusters(sample.all_count))
-            .cluster_count;
-    const bool is_more = wanted > high || (column == 1 && low == 1);
-    if (is_more && high < most && (column == 1 || wanted > high + high / 3)) {
-      high = std::min(most, high * kStep);
-      add(high);
-    } else if (!is_more && low > 1 && (column == 1 || wanted < low - low / 4)) {
-      low = std::max(1, low / kStep);
-      add(low);
-    } else {
-      break;
+  for (int column = 1; column < kMostColumns && most > 1; ++column) {
+    const Choice wanted =
+        choose(survey.model, bound, {sample.all_count, n}, most_clusters(sample.all_count));
+    const int count = wanted.cluster_count;
+    const bool is_more = count > high || (column == 1 && low == least);
+    int next = 0;
+    if (is_more && high < most && (column == 1 || count > high + high / 3)) {
+      next = high = std::min(most, high * kStep);
+    } else if (!is_more && low > least && (column == 1 || count < low - low / 4)) {
+      next = low = std::max(least, low / kStep);
     }
+    if (next == 0 || !surveyor.can_afford(survey.model, next, wanted)) break;
+    add(next);
   }
   survey.flops = surveyor.flops();
   return survey;

@@ -109,7 +109,7 @@ TEST_P(SearchResume, ContinuesToTheSameEncoding) {
     options.checkpoint = checkpoint;
     const Found found = encode_within(bound, method, signal, 30, options);
     expect_same(found.encoded, expected.encoded);
-    EXPECT_EQ(found.flops_cost, expected.flops_cost);
+    EXPECT_EQ(found.flops_cost(), expected.flops_cost());
     ASSERT_EQ(found.trials.size(), expected.trials.size());
     for (std::size_t i = 0; i < found.trials.size(); ++i) {
       EXPECT_EQ(found.trials[i].choice, expected.trials[i].choice);
