@@ -53,7 +53,7 @@ class Signal(SignalTest):
         self.assertEqual(report["stored_numbers"],
                          1500 * report["component_count"] + 12 * report["cluster_count"] *
                          (1 + report["component_count"]))
-        self.assertEqual(search["sampled_points"], 1500)
+        self.assertEqual(search["sampled_points"], 375)
         self.assertIn((report["cluster_count"], report["component_count"]),
                       [(t["cluster_count"], t["component_count"]) for t in search["trials"]])
         report = self.compress("--max-error", 0.1, "--norm", "max")
