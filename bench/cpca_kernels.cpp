@@ -53,8 +53,7 @@ struct Kernel {
 cpca::Clusterer make_clusters(const signal::Matrix& signal, const cpca::WorkingSpace& space,
                               std::size_t cluster_count, std::uint32_t component_count) {
   const auto means = cpca::seed_means(signal.values, signal.column_count, cluster_count, 1);
-  cpca::Clusterer clusterer(space.rows(), space.rows().stride, space.convert(means),
-                            component_count + 1);
+  cpca::Clusterer clusterer(space.rows(), space.rows().stride, space.convert(means));
   clusterer.classify(true);
   for (std::uint32_t count = 0; count <= component_count; ++count) {
     clusterer.update(std::vector<std::uint32_t>(cluster_count, count), count + 1, 1);
@@ -71,13 +70,21 @@ std::vector<float> floats_of(const cpca::Rows& rows) {
   return values;
 }
 
+/// Means and vectors of all clusters.
+std::vector<float> vectors_of(const cpca::Subspaces& subspaces) {
+  std::vector<float> vectors;
+  for (const auto& rows : subspaces.values) vectors.insert(vectors.end(), rows.begin(), rows.end());
+  return vectors;
+}
+
 double multiply_by_blas(const std::vector<float>& rows, std::size_t n,
-                        const cpca::Subspaces& subspaces, std::vector<float>& products) {
-  const std::size_t vectors = subspaces.values.size() / subspaces.stride;
+                        const std::vector<float>& subspaces, std::size_t stride,
+                        std::vector<float>& products) {
+  const std::size_t vectors = subspaces.size() / stride;
   parallel_for(rows.size() / n, kBlock, [&](std::size_t begin, std::size_t end) {
     linalg::gemm(1.0f, {&rows[begin * n], end - begin, n}, linalg::Transpose::no,
-                 {subspaces.values.data(), vectors, n, subspaces.stride}, linalg::Transpose::yes,
-                 0.0f, {&products[begin * vectors], end - begin, vectors});
+                 {subspaces.data(), vectors, n, stride}, linalg::Transpose::yes, 0.0f,
+                 {&products[begin * vectors], end - begin, vectors});
   });
   return 2.0 * static_cast<double>(rows.size() * vectors);
 }
@@ -96,8 +103,9 @@ void run(const signal::Matrix& signal, std::size_t cluster_count, std::uint32_t 
   const auto axes = cpca::find_principal_axes(signal.values, signal.column_count, axis_count, {});
   cpca::Clusterer clusterer = make_clusters(signal, space, cluster_count, component_count);
   const std::vector<std::uint32_t> used(cluster_count, component_count);
-  const std::size_t vectors = clusterer.subspaces().values.size() / clusterer.subspaces().stride;
-  std::vector<float> products(signal.row_count * vectors);
+  const std::vector<float> vectors = vectors_of(clusterer.subspaces());
+  const std::size_t stride = clusterer.subspaces().stride;
+  std::vector<float> products(signal.row_count * vectors.size() / stride);
   const std::vector<float> rows = floats_of(space.rows());
   const auto taken = [&](const auto& work) {
     const double before = clusterer.flops();
@@ -108,7 +116,7 @@ void run(const signal::Matrix& signal, std::size_t cluster_count, std::uint32_t 
                                                         cluster_count * (1 + component_count));
   std::vector<Kernel> kernels;
   kernels.push_back({fmt::format("SGEMM, {}", linalg::blas_description()), [&] {
-                       return multiply_by_blas(rows, axis_count, clusterer.subspaces(), products);
+                       return multiply_by_blas(rows, axis_count, vectors, stride, products);
                      }});
   kernels.push_back(
       {"classification, full pass", [&] { return taken([&] { clusterer.classify(true); }); }});

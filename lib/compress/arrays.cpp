@@ -28,6 +28,9 @@ Arrays pack(const cpca::Encoding& encoding) {
     arrays.bases.insert(arrays.bases.end(), first, first + static_cast<std::ptrdiff_t>(count * n));
     arrays.counts.push_back(static_cast<std::uint32_t>(count));
   }
+  std::size_t count = 0;
+  for (const std::uint32_t k : encoding.cluster_of_point) count += arrays.counts[k];
+  arrays.weights.reserve(count);
   for (std::size_t p = 0; p < encoding.point_count; ++p) {
     const auto first = encoding.weights.begin() + static_cast<std::ptrdiff_t>(p * components);
     arrays.weights.insert(arrays.weights.end(), first,

@@ -6,6 +6,7 @@
 #include "core/checkpoint.h"
 #include "core/hash.h"
 #include "core/log.h"
+#include "cpca/fit.h"
 #include "gltf/precomputed_transfer.h"
 
 namespace prt::compress {
@@ -81,7 +82,9 @@ cpca::Storage store(const Job& job, const Input& input, Result& result, Report& 
                                  encoding, report);
   };
   if (options.is_incoherent || !(bound.max_error || bound.max_bytes)) return prepare();
-  const cpca::Encoding plain = encoding;
+  encoding.weights = std::vector<float>();
+  const cpca::Encoding plain = encoding;  // without weights, which follow from the rest
+  cpca::fit_weights(signal, encoding);
   cpca::Storage storage = prepare();
   // Moves stretch the ranges of weights, and give points of adaptive encodings more of them.
   const bool is_left_out = !is_within(job, *result.weights, encoding, input);
@@ -89,6 +92,7 @@ cpca::Storage store(const Job& job, const Input& input, Result& result, Report& 
   if (!is_left_out) return storage;
   log::info("coherence would leave the bound, and is left out");
   encoding = plain;
+  cpca::fit_weights(signal, encoding);
   options.is_incoherent = true;
   return prepare();
 }

@@ -12,6 +12,7 @@
 #include "compress/arrays.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "cpca/fit.h"
 #include "gltf/precomputed_transfer.h"
 
 namespace prt::compress {
@@ -94,6 +95,7 @@ class FormatSearch {
     search_.add_up(found);
     tell(found);
     best_->result.encoded = std::move(found.encoded);
+    cpca::fit_weights(input_.transfer.values, best_->result.encoded.encoding);
     return std::move(best_->result);
   }
 
@@ -144,11 +146,14 @@ class FormatSearch {
       const cpca::Bound bound = this->bound(format, reserve);
       Candidate candidate{.found = find(bound, format)};
       candidate.result.reserve = reserve;
-      const cpca::Encoding& encoding = candidate.found.encoded.encoding;
+      cpca::Encoding& encoding = candidate.found.encoded.encoding;
       if (input_.document) candidate.result.weights = format;
+      const double exact = error(encoding);
+      encoding.weights = std::vector<float>();  // they follow from the rest
       cpca::Encoding stored = encoding;
+      cpca::fit_weights(input_.transfer.values, stored);
       cpca::convert_weights(format, stored);
-      const double exact = error(encoding), rounded = error(stored);
+      const double rounded = error(stored);
       const double added = std::max(0.0, rounded * rounded - exact * exact);
       if (is_within(job_, format, stored, input_)) {
         const auto bytes = static_cast<double>(bound.cost.bytes(encoding));

@@ -153,6 +153,7 @@ void run(const Job& job, Report& report) {
     report.json().update(cpca::overdraw_to_json(input.scene.indices(), encoded.encoding));
   }
   if (!job.output.empty()) {
+    values = std::vector<float>();  // room for what is written
     const StageTimer timer(report, "save");
     if (input.document) {
       save_model(job, input, storage, std::move(encoded.encoding), report);

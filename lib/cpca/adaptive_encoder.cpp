@@ -96,7 +96,7 @@ class Adaptation {
     const Subspaces& subspaces = clusterer_.subspaces();
     std::vector<double> variances(subspaces.cluster_count() * most_);
     for (std::size_t k = 0; k < subspaces.cluster_count(); ++k) {
-      std::copy_n(&subspaces.variances[k * subspaces.capacity], subspaces.held[k],
+      std::copy_n(subspaces.variances[k].begin(), subspaces.held[k],
                   variances.begin() + static_cast<std::ptrdiff_t>(k * most_));
     }
     const auto tight = static_cast<std::size_t>(kTightShare * static_cast<double>(budget_));
@@ -187,9 +187,7 @@ Encoded encode_adaptive(std::span<const float> signal, int dimension, const Opti
   std::vector<std::uint32_t> labels;
   StageClock clock(encoded.stages);
   {  // what the encoder holds is gone before weights are made
-    IterativeEncoder encoder(
-        signal, n, options,
-        static_cast<std::size_t>(std::max(most.component_count, options.component_count + 1)));
+    IterativeEncoder encoder(signal, n, options);
     clock.finish("seeding");
     encoded.levels = encoder.run();
     clock.finish("clustering");

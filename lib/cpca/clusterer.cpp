@@ -20,10 +20,9 @@ constexpr std::size_t kLeading = 32;
 
 }  // namespace
 
-Clusterer::Clusterer(const Rows& rows, std::size_t dimension, std::span<const float> means,
-                     std::size_t capacity)
+Clusterer::Clusterer(const Rows& rows, std::size_t dimension, std::span<const float> means)
     : rows_(rows),
-      subspaces_(means.size() / rows.stride, padded(rows.stride), capacity),
+      subspaces_(means.size() / rows.stride, padded(rows.stride), 0),
       labels_(rows.count),
       errors_(rows.count) {
   set_dimension(dimension);
@@ -36,7 +35,7 @@ Clusterer::Clusterer(const Rows& rows, std::size_t dimension, std::span<const fl
 
 void Clusterer::set_rows(const Rows& rows) {
   rows_ = rows;
-  subspaces_ = Subspaces(subspaces_.cluster_count(), padded(rows.stride), subspaces_.capacity);
+  subspaces_ = Subspaces(subspaces_.cluster_count(), padded(rows.stride), 0);
 }
 
 void Clusterer::set_labels(std::span<const std::uint32_t> labels) {
@@ -76,10 +75,16 @@ void Clusterer::set_used(std::span<const std::uint32_t> used) {
 
 void Clusterer::archive(Archive& archive) {
   archive.value(subspaces_.dimension);
-  archive.array(subspaces_.values);
+  std::size_t capacity = subspaces_.capacity;
+  archive.value(capacity);
   archive.array(subspaces_.used);
   archive.array(subspaces_.held);
-  archive.array(subspaces_.variances);
+  if (archive.is_reading()) {
+    subspaces_.resize(subspaces_.used.size());
+    subspaces_.reserve(capacity);
+  }
+  for (auto& values : subspaces_.values) archive.array(values);
+  for (auto& variances : subspaces_.variances) archive.array(variances);
   archive.array(labels_);
   archive.array(errors_);
   archive.array(neighbours_);
@@ -229,6 +234,7 @@ std::size_t Clusterer::fill_empty_clusters() {
 }
 
 void Clusterer::update(std::span<const std::uint32_t> used, std::uint32_t held, int steps) {
+  subspaces_.reserve(held);
   parallel_for(subspaces_.cluster_count(), 1, [&](std::size_t k, std::size_t) {
     update_subspace(rows_, sorted_.of(k), errors_, subspaces_, k,
                     {.used = used[k], .held = held, .steps = steps});

@@ -21,10 +21,9 @@ namespace prt::cpca {
 
 class Clusterer {
  public:
-  /// Clusters with these means (cluster × stride of the rows), no vectors, and room for `capacity`;
-  /// every point is in the first.
-  Clusterer(const Rows& rows, std::size_t dimension, std::span<const float> means,
-            std::size_t capacity);
+  /// Clusters with these means (cluster × stride of the rows) and no vectors; every point is in the
+  /// first.
+  Clusterer(const Rows& rows, std::size_t dimension, std::span<const float> means);
 
   struct Pass {
     double error_before = 0.0;  ///< Σ_p weight_p ‖x_p - x̃_p‖² with points where they were,

@@ -32,12 +32,12 @@ std::vector<float> first_means(std::span<const float> signal, std::size_t dimens
 }  // namespace
 
 IterativeEncoder::IterativeEncoder(std::span<const float> signal, std::size_t dimension,
-                                   const Options& options, std::size_t capacity)
+                                   const Options& options)
     : options_(options),
       // Without vectors clusters are compared as vector quantisation does it.
       space_(signal, dimension, options.point_weights, options.component_count > 0),
       clusterer_(space_.rows(), space_.dimension(),
-                 space_.convert(first_means(signal, dimension, options)), capacity),
+                 space_.convert(first_means(signal, dimension, options))),
       steps_(space_.has_axes() ? kSteps : kStepsWithoutAxes),
       progress_(
           "encoding",
@@ -175,8 +175,7 @@ Encoded encode_iterative(std::span<const float> signal, int dimension, const Opt
   std::vector<std::uint32_t> labels;
   StageClock clock(encoded.stages);
   {  // what the encoder holds is gone before weights are made
-    IterativeEncoder encoder(signal, static_cast<std::size_t>(dimension), options,
-                             static_cast<std::size_t>(options.component_count) + 1);
+    IterativeEncoder encoder(signal, static_cast<std::size_t>(dimension), options);
     clock.finish("seeding");
     encoded.levels = encoder.run();
     encoded.flops = encoder.clusterer().flops();

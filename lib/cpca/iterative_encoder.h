@@ -14,10 +14,8 @@ namespace prt::cpca {
 
 class IterativeEncoder {
  public:
-  /// Seeds the clusters, with room for `capacity` vectors each, at least one more than
-  /// options.component_count.
-  IterativeEncoder(std::span<const float> signal, std::size_t dimension, const Options& options,
-                   std::size_t capacity);
+  /// Seeds the clusters.
+  IterativeEncoder(std::span<const float> signal, std::size_t dimension, const Options& options);
 
   /// Iterates at no vectors, one, up to options.component_count, or only there from a start. Goes
   /// on after the last level that the checkpoint of the options holds.

@@ -16,7 +16,8 @@ constexpr double kLeast = 1e-6;
 }  // namespace
 
 Subspaces find_leading(const Subspaces& subspaces, std::size_t dimension) {
-  Subspaces leading(subspaces.cluster_count(), padded(dimension), subspaces.capacity);
+  const std::uint32_t most = *std::max_element(subspaces.used.begin(), subspaces.used.end());
+  Subspaces leading(subspaces.cluster_count(), padded(dimension), most);
   leading.dimension = dimension;
   parallel_for(leading.cluster_count(), 16, [&](std::size_t begin, std::size_t end) {
     std::vector<double> rows;

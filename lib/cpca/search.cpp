@@ -302,7 +302,8 @@ class Search::State {
       options.start = {labels, std::accumulate(errors.begin(), errors.end(), 0.0)};
     }
     last_.reset();
-    if (best_) best_->encoded.encoding.weights = {};  // room for another; fit_weights() knows them
+    // Room for another; fit_weights() knows them. {} would keep the room.
+    if (best_) best_->encoded.encoding.weights = std::vector<float>();
     auto made = std::make_shared<Made>();
     made->trial = {.choice = choice, .first_clusters = first.cluster_count, .is_warm = is_warm};
     const std::uint32_t number = trial_number_++;

@@ -180,8 +180,7 @@ class Surveyor {
   }
 
   Column encode_iteratively() {
-    IterativeEncoder encoder(sample_.signal, static_cast<std::size_t>(dimension_), options_,
-                             static_cast<std::size_t>(options_.component_count) + 1);
+    IterativeEncoder encoder(sample_.signal, static_cast<std::size_t>(dimension_), options_);
     Column column{options_.cluster_count, {}};
     for (int i = 0; i <= options_.component_count; ++i) {
       encoder.run_level();

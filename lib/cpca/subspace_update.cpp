@@ -40,8 +40,7 @@ class Update {
     // The eigenvectors of V C V^T turn V C.
     const auto pairs =
         linalg::largest_eigenpairs(linalg::MatrixD{inner.data(), count, count}, count);
-    std::copy(pairs.values.begin(), pairs.values.end(),
-              &subspaces_.variances[cluster_ * subspaces_.capacity]);
+    std::copy(pairs.values.begin(), pairs.values.end(), subspaces_.variances[cluster_].begin());
     subspaces_.held[cluster_] = static_cast<std::uint32_t>(
         turn_vectors(std::span(moments).subspan(subspaces_.stride), pairs.vectors,
                      kRankTolerance * pairs.values[0], subspaces_, cluster_, count));

@@ -34,33 +34,42 @@ inline std::size_t padded(std::size_t dimension) {
 }
 
 struct Subspaces {
-  std::size_t dimension = 0;        ///< coordinates that count; the rest of a row is zero
-  std::size_t stride = 0;           ///< floats of a row, at least padded(dimension)
-  std::size_t capacity = 0;         ///< vectors that a cluster can hold
-  std::vector<float> values;        ///< cluster × (1 + capacity) × stride: mean, then vectors
+  std::size_t dimension = 0;  ///< coordinates that count; the rest of a row is zero
+  std::size_t stride = 0;     ///< floats of a row, at least padded(dimension)
+  std::size_t capacity = 0;   ///< vectors that a cluster can hold
+  /// Of each cluster (1 + capacity) × stride: mean, then vectors. Each has memory of its own, so
+  /// that growing takes no second copy of all.
+  std::vector<std::vector<float>> values;
   std::vector<std::uint32_t> used;  ///< vectors of each cluster that approximate points
   std::vector<std::uint32_t> held;  ///< and those that it keeps besides, for later: >= used
   /// Estimates of the squared singular values of the vectors held: cluster × capacity.
-  std::vector<double> variances;
+  std::vector<std::vector<double>> variances;
 
   Subspaces(std::size_t cluster_count, std::size_t row_stride, std::size_t vector_capacity)
-      : stride(row_stride),
-        capacity(vector_capacity),
-        values(cluster_count * (1 + vector_capacity) * row_stride),
-        used(cluster_count),
-        held(cluster_count),
-        variances(cluster_count * vector_capacity) {}
+      : stride(row_stride), capacity(vector_capacity) {
+    resize(cluster_count);
+  }
 
   std::size_t cluster_count() const { return used.size(); }
   /// Further clusters have no vectors.
   void resize(std::size_t cluster_count) {
-    values.resize(cluster_count * (1 + capacity) * stride);
+    values.resize(cluster_count, std::vector<float>((1 + capacity) * stride));
     used.resize(cluster_count);
     held.resize(cluster_count);
-    variances.resize(cluster_count * capacity);
+    variances.resize(cluster_count, std::vector<double>(capacity));
   }
-  float* mean(std::size_t k) { return &values[k * (1 + capacity) * stride]; }
-  const float* mean(std::size_t k) const { return &values[k * (1 + capacity) * stride]; }
+  /// Room for so many vectors, if there is less.
+  void reserve(std::size_t vector_capacity) {
+    if (vector_capacity <= capacity) return;
+    capacity = vector_capacity;
+    for (std::vector<float>& rows : values) {
+      rows.reserve((1 + capacity) * stride);  // not the double
+      rows.resize((1 + capacity) * stride);
+    }
+    for (std::vector<double>& variance : variances) variance.resize(capacity);
+  }
+  float* mean(std::size_t k) { return values[k].data(); }
+  const float* mean(std::size_t k) const { return values[k].data(); }
   float* vector(std::size_t k, std::size_t i) { return mean(k) + (1 + i) * stride; }
   const float* vector(std::size_t k, std::size_t i) const { return mean(k) + (1 + i) * stride; }
 };

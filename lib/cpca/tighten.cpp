@@ -39,8 +39,7 @@ class Tightener {
         weights_(start.point_count, 1.0f),
         row_weights_(weights_),
         shares_(start.point_count),
-        clusterer_({signal.data(), start.point_count, n_, row_weights_}, n_, start.means,
-                   component_count_ + 1) {
+        clusterer_({signal.data(), start.point_count, n_, row_weights_}, n_, start.means) {
     for (int k = 0; k < start.cluster_count; ++k) {
       wanted_.push_back(static_cast<std::uint32_t>(start.component_count_of(k)));
     }

@@ -141,7 +141,6 @@ WeightFormat choose_weights(std::span<const float> signal, std::optional<WeightF
   const double exact = sum(weighted_errors(encoding, signal, limits.point_weights));
   double least = std::min(limits.total, (1.0 + kMaxAddedError) * exact);
   WeightFormat chosen = WeightFormat::float32;
-  Encoding best;
   // Of formats of one size the last that is as good: where it makes no difference, integers.
   for (const WeightFormat smaller :
        {WeightFormat::unorm8, WeightFormat::float16, WeightFormat::unorm16}) {
@@ -154,9 +153,8 @@ WeightFormat choose_weights(std::span<const float> signal, std::optional<WeightF
     if (total > least || *std::max_element(errors.begin(), errors.end()) > limits.point) continue;
     least = total;
     chosen = smaller;
-    best = std::move(converted);
   }
-  if (chosen != WeightFormat::float32) encoding = std::move(best);
+  convert_weights(chosen, encoding);
   return chosen;
 }
 

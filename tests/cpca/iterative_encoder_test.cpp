@@ -129,7 +129,7 @@ TEST(IterativeEncoder, MeasuresLevelsInAllCoordinates) {
   constexpr int kDimension = 128;
   const auto signal = make_signal(1200, kDimension, 4);
   const Options options{.cluster_count = 20, .component_count = 3, .iterations = 4};
-  IterativeEncoder encoder(signal, kDimension, options, 4);
+  IterativeEncoder encoder(signal, kDimension, options);
   const auto error_of_best = [&](const std::vector<std::uint32_t>& labels, int count) {
     Options here = options;
     here.component_count = count;

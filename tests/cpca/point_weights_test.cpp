@@ -78,7 +78,7 @@ TEST(WeightlessPoints, TakeNoEmptyCluster) {
   const Clustering quantized = quantize(signal, 1, means, 5, weights);
   EXPECT_EQ(quantized.means, (std::vector<float>{0.0f, 1.0f}));
   EXPECT_EQ(quantized.labels[3], 1u);
-  Clusterer clusterer({signal.data(), signal.size(), 1, weights}, 1, means, 1);
+  Clusterer clusterer({signal.data(), signal.size(), 1, weights}, 1, means);
   EXPECT_EQ(clusterer.classify(true).moved_count, 1u);
   EXPECT_EQ(clusterer.labels()[3], 1u);
   EXPECT_EQ(clusterer.labels()[7], 0u);
