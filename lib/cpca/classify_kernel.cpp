@@ -26,9 +26,21 @@ template <class T>
         (*reinterpret_cast<const Unaligned*>(a + i) - *reinterpret_cast<const Unaligned*>(b + i)) *
         *reinterpret_cast<const Unaligned*>(c + i);
   }
-  float total = 0.0f;
-  for (int lane = 0; lane < T::kLanes; ++lane) total += sum[lane];
-  return total;
+  return sum_lanes<T>(sum);
+}
+
+/// Σ (a - b)²
+template <class T>
+[[gnu::always_inline]] inline float square_difference(const float* a, const float* b,
+                                                      std::size_t count) {
+  using Unaligned = typename T::Unaligned;
+  typename T::Floats sum{};
+  for (std::size_t i = 0; i < count; i += T::kLanes) {
+    const typename T::Floats difference =
+        *reinterpret_cast<const Unaligned*>(a + i) - *reinterpret_cast<const Unaligned*>(b + i);
+    sum += difference * difference;
+  }
+  return sum_lanes<T>(sum);
 }
 
 /// For each candidate ‖d‖², then d·b_i of its vectors.
@@ -40,9 +52,7 @@ template <class T>
   const float* own = subspaces.mean(candidates[0]);
   for (const std::uint32_t k : candidates) {
     const float* mean = subspaces.mean(k);
-    const float square =
-        dot_difference<T>(mean, own, mean, count) - dot_difference<T>(mean, own, own, count);
-    *offsets++ = std::max(0.0f, square);
+    *offsets++ = square_difference<T>(mean, own, count);
     for (std::uint32_t i = 0; i < subspaces.used[k]; ++i) {
       *offsets++ = dot_difference<T>(mean, own, subspaces.vector(k, i), count);
     }
@@ -83,10 +93,17 @@ struct PanelErrors {
     panel = coordinates;
     flops_of_row = 2.0 * static_cast<double>(points * subspaces.dimension);
     const auto* y = reinterpret_cast<const Floats*>(panel);
-    square[0] = square[1] = Floats{};
-    for (std::size_t d = 0; d < subspaces.dimension; ++d) {
-      square[0] += y[2 * d] * y[2 * d];
-      square[1] += y[2 * d + 1] * y[2 * d + 1];
+    constexpr std::size_t kSums = 8;  // of which none waits for another
+    const std::size_t count = 2 * subspaces.dimension;
+    Floats sums[kSums] = {};
+    std::size_t i = 0;
+    for (; i + kSums <= count; i += kSums) {
+#pragma GCC unroll 8
+      for (std::size_t j = 0; j < kSums; ++j) sums[j] += y[i + j] * y[i + j];
+    }
+    for (; i < count; ++i) sums[i % 2] += y[i] * y[i];
+    for (std::size_t half = 0; half < 2; ++half) {
+      square[half] = (sums[half] + sums[2 + half]) + (sums[4 + half] + sums[6 + half]);
     }
     multiply_by(0);
     const auto* product = reinterpret_cast<const Floats*>(products.get());

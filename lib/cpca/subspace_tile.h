@@ -113,6 +113,21 @@ template <std::size_t Step, class Floats, std::size_t... Lane>
   a = first;
 }
 
+/// The sum of all lanes, in pairs.
+template <int Step, class Floats, std::size_t... Lane>
+[[gnu::always_inline]] inline float sum_lanes(Floats sum, std::index_sequence<Lane...> lanes) {
+  if constexpr (Step == 0) {
+    return sum[0];
+  } else {
+    const Floats others = __builtin_shufflevector(sum, sum, (Lane ^ std::size_t{Step})...);
+    return sum_lanes<Step / 2>(sum + others, lanes);
+  }
+}
+template <class T>
+[[gnu::always_inline]] inline float sum_lanes(typename T::Floats sum) {
+  return sum_lanes<T::kLanes / 2>(sum, std::make_index_sequence<T::kLanes>{});
+}
+
 /// Transposes a square of registers.
 template <std::size_t Lanes, std::size_t Step = 1, class Floats>
 [[gnu::always_inline]] inline void transpose_square(Floats (&rows)[Lanes]) {
