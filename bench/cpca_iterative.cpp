@@ -1,6 +1,6 @@
 // Iterative clustered PCA beside the plain way: each iteration one product of the signal with all
 // clusters' vectors by BLAS, then covariance and the needed eigenpairs of every cluster by LAPACK.
-//   bench_cpca_iterative [signal.npy [clusters [components [iterations]]]]
+//   bench_cpca_iterative [signal.npy [clusters [components [iterations [seed]]]]]
 // Without a signal: 50,000 × 600 made up, 256 clusters, 8 components, 15 iterations. The plain way
 // takes minutes. Processor time, of all threads, tells the ratio on busy machines too.
 #include <fmt/format.h>
@@ -141,9 +141,9 @@ class Plain {
 };
 
 void run(const signal::Matrix& signal, const cpca::Options& options) {
-  fmt::print("{} points x {}, {} clusters, {} components, {} iterations each\n", signal.row_count,
-             signal.column_count, options.cluster_count, options.component_count,
-             options.iterations);
+  fmt::print("{} points x {}, {} clusters, {} components, {} iterations each, seed {}\n",
+             signal.row_count, signal.column_count, options.cluster_count, options.component_count,
+             options.iterations, options.seed);
   auto start = std::chrono::steady_clock::now();
   double processor_start = processor_seconds();
   const cpca::Encoded encoded =
@@ -194,5 +194,6 @@ int main(int argc, char** argv) {
   fmt::print("{} threads, {}\n", thread_count(), simd_level_name(simd_level()));
   run(signal, {.cluster_count = number(2, 256),
                .component_count = number(3, 8),
-               .iterations = number(4, 15)});
+               .iterations = number(4, 15),
+               .seed = static_cast<std::uint64_t>(number(5, 1))});
 }

@@ -26,6 +26,21 @@ double error_in(const Subspaces& subspaces, std::size_t k, const float* x) {
   return error;
 }
 
+TEST(Subspaces, KeepTheirVectorsWhenThereIsRoomForMore) {
+  Subspaces subspaces = make_subspaces(40, 5, 3);
+  const Subspaces before = subspaces;
+  subspaces.reserve(2);
+  EXPECT_EQ(subspaces.capacity, 3u);
+  subspaces.reserve(7);
+  EXPECT_EQ(subspaces.capacity, 7u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_EQ(subspaces.values[k].capacity(), 8 * subspaces.stride);
+    EXPECT_TRUE(std::equal(before.values[k].begin(), before.values[k].end(), subspaces.mean(k)));
+    EXPECT_EQ(std::count(subspaces.vector(k, 3), subspaces.vector(k, 7), 0.0f),
+              static_cast<std::ptrdiff_t>(4 * subspaces.stride));
+  }
+}
+
 TEST(SubspaceKernels, PointsGoToTheClusterOfLeastError) {
   for (SimdLevel level : levels()) {
     for (const auto& [n, cluster_count, many, point_count] : kShapes) {
