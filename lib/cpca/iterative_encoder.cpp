@@ -12,11 +12,10 @@ namespace prt::cpca {
 
 namespace {
 
-/// Power steps after a classification in axes, in the signal's coordinates, of which there are few
-/// then, and for clusters whose vectors start from nothing.
-constexpr int kSteps = 1, kStepsWithoutAxes = 2, kFirstSteps = 8;
-/// Full passes that a level with vectors begins with, without axes; in axes it is one.
-constexpr int kFullWithoutAxes = 2;
+/// Power steps after a classification, and for clusters whose vectors start from nothing.
+constexpr int kSteps = 2, kFirstSteps = 8;
+/// Full passes that a level begins with.
+constexpr int kFull = 2;
 /// Of the last iterations, those in all coordinates where the others knew the first axes only: at
 /// most half.
 constexpr int kLastIterations = 4;
@@ -38,7 +37,6 @@ IterativeEncoder::IterativeEncoder(std::span<const float> signal, std::size_t di
       space_(signal, dimension, options.point_weights, options.component_count > 0),
       clusterer_(space_.rows(), space_.dimension(),
                  space_.convert(first_means(signal, dimension, options))),
-      steps_(space_.has_axes() ? kSteps : kStepsWithoutAxes),
       progress_(
           "encoding",
           static_cast<std::size_t>(options.iterations) *
@@ -108,7 +106,7 @@ void IterativeEncoder::finish_level(int count) {
   move_to_space(count);
   for (int i = 0; i < last; ++i) {
     levels_.back().errors.push_back(clusterer_.classify(false).error);
-    update(count, steps_);
+    update(count, kSteps);
   }
 }
 
@@ -134,7 +132,7 @@ void IterativeEncoder::update_for(int count, double error) {
     is_away_ = false;
   } else {
     clusterer_.set_dimension(space_.dimension());
-    update(count, steps_);
+    update(count, kSteps);
   }
 }
 
@@ -151,8 +149,7 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
     // The first pass of all knows no neighbours, not even those of its own result. Of few
     // coefficients and no vectors full passes cost little, and all levels begin with what they
     // find.
-    const int full_count = count == 0 ? (space_.has_axes() ? 2 : iterations)
-                                      : (space_.has_axes() ? 1 : kFullWithoutAxes);
+    const int full_count = count == 0 && !space_.has_axes() ? iterations : kFull;
     const bool full = settled || i < full_count || (is_final && i == last);
     const Clusterer::Pass pass = clusterer_.classify(full);
     level.errors.push_back(pass.error + space_.tail());
@@ -160,7 +157,7 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
     if (count == 0) {
       update_for(count, level.errors.back());
     } else {
-      update(count, steps_);
+      update(count, kSteps);
     }
     progress_.advance(1);
     settled = pass.moved_count == 0;

@@ -47,7 +47,6 @@ class IterativeEncoder {
   const Options& options_;
   WorkingSpace space_;
   Clusterer clusterer_;
-  int steps_;  ///< of updates after a classification
   std::vector<Level> levels_;
   int resumed_iterations_ = 0;
   bool is_away_ = false;  ///< the clusterer is in all coordinates, which are not those of space_
