@@ -88,7 +88,7 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
   plot.series.push_back(
       {"static", counts_up_to(most), errors_by_count(fixed.encoding, signal.values)});
   cpca::IterativeEncoder iterative(signal.values, static_cast<std::size_t>(signal.dimension()),
-                                   options, static_cast<std::size_t>(most) + 1);
+                                   options);
   Series& curve = plot.series.emplace_back(Series{"iterative", {}, {}});
   for (int n = 0; n <= most; ++n) {
     iterative.run_level();

@@ -51,14 +51,14 @@ double alone_flops(const Found& found, const Bound& bound, Method method,
 
 // Counted here, not as the search tells it: small signals of all methods and bounds.
 TEST(EncodeWithin, TakesAboutThreeEncodingsOfWhatItKeeps) {
-  struct Case {
+  struct Kind {
     std::size_t point_count;
     int dimension;
     Method method;
   };
-  for (const Case& test : {Case{500, 25, Method::iterative}, Case{500, 75, Method::iterative},
-                           Case{1500, 25, Method::iterative}, Case{1500, 75, Method::iterative},
-                           Case{1500, 25, Method::fixed}, Case{1500, 25, Method::adaptive}}) {
+  for (const Kind& test : {Kind{500, 25, Method::iterative}, Kind{500, 75, Method::iterative},
+                           Kind{1500, 25, Method::iterative}, Kind{1500, 75, Method::iterative},
+                           Kind{1500, 25, Method::fixed}, Kind{1500, 25, Method::adaptive}}) {
     const auto signal = make_surface(test.point_count, static_cast<std::size_t>(test.dimension));
     std::vector<Bound> bounds{{.max_error = {}, .max_bytes = signal.size()}};
     for (const double max_error : {0.2, 0.05, 0.01}) {
