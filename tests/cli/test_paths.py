@@ -82,7 +82,7 @@ class Paths(ToolTest):
     def test_counts_and_signs_of_values(self):
         out = ("-o", self.folder / "x.glb")
         self.refused(WRONG_USAGE, "count", "prt-import", self.source, *out, "--base-color", "1,1")
-        self.refused(WRONG_USAGE, "X,Y,Z", "prt-render", self.quad, "-o", self.folder / "x.png",
+        self.refused(WRONG_USAGE, "expected 3 values", "prt-render", self.quad, "-o", self.folder / "x.png",
                      "--eye", "1,2")
         self.refused(WRONG_USAGE, "out of range", "prt-import", self.source, *out,
                      "--max-input-bytes", -1)
