@@ -195,13 +195,12 @@ bool Checkpoint::take_room(std::size_t size, std::size_t& offset) {
 
 std::size_t Checkpoint::byte_count(Name name) const {
   const std::lock_guard lock(mutex_);
-  const auto found = places_.find({first_stage_ + name.stage, name.index});
+  const auto found = places_.find(name);
   return found != places_.end() ? found->second.byte_count : 0;
 }
 
 std::size_t Checkpoint::byte_count(std::uint32_t stage) const {
   const std::lock_guard lock(mutex_);
-  stage += first_stage_;
   std::size_t sum = 0;
   for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
        ++at) {
@@ -212,7 +211,6 @@ std::size_t Checkpoint::byte_count(std::uint32_t stage) const {
 
 void Checkpoint::release(std::uint32_t stage) {
   const std::lock_guard lock(mutex_);
-  stage += first_stage_;
   for (auto at = places_.lower_bound({stage, 0}); at != places_.end() && at->first.stage == stage;
        at = places_.erase(at)) {
     free_room(at->second.offset - sizeof(RecordHead), record_size(at->second.byte_count));
@@ -221,7 +219,7 @@ void Checkpoint::release(std::uint32_t stage) {
 
 bool Checkpoint::restore_bytes(Name name, std::span<std::byte> result) const {
   const std::lock_guard lock(mutex_);
-  const auto found = places_.find({first_stage_ + name.stage, name.index});
+  const auto found = places_.find(name);
   return found != places_.end() && found->second.byte_count == result.size() &&
          read_all(descriptor_, result.data(), result.size(), found->second.offset);
 }
@@ -237,7 +235,6 @@ void Checkpoint::store_bytes(Name name, std::span<const std::byte> result) {
   if (given_up_) return;
   if (!begun_) begin_file();
   if (given_up_) return;
-  name.stage += first_stage_;
   const RecordHead head{name.stage, name.index, result.size(), last_number_ + 1};
   Hasher hasher;
   hasher.add(&head, sizeof head);

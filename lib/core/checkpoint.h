@@ -43,10 +43,6 @@ class Checkpoint {
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
 
-  /// Names are from here on of that part of the work, 0 at first: parts may use the same ones.
-  /// Stages are below 65536.
-  void begin_part(std::uint32_t part) { first_stage_ = part << 16; }
-
   /// Copies the result and returns true, or returns false if there is none of that size. Threads
   /// may call this and store.
   template <class T>
@@ -98,7 +94,6 @@ class Checkpoint {
   const double after_seconds_;
   const std::string head_;  ///< what the file begins with: its kind and the hash of the key
   const Stopwatch watch_;
-  std::uint32_t first_stage_ = 0;  ///< of the part
   mutable std::mutex mutex_;
   int descriptor_ = -1;
   bool given_up_, begun_ = false;  ///< begun_: the file has head_

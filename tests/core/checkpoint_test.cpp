@@ -167,24 +167,6 @@ TEST_F(CheckpointTest, ReleasedRoomIsUsedAgain) {
   EXPECT_EQ(Checkpoint(options_, "key").byte_count(4), 4 * (100u + 110 + 120 + 130 + 140));
 }
 
-TEST_F(CheckpointTest, PartsMayUseTheSameNames) {
-  write_five();
-  Checkpoint checkpoint(options_, "key");
-  checkpoint.begin_part(1);
-  EXPECT_FALSE(has(checkpoint, 2));
-  const std::vector<int> values{1, 2, 3};
-  checkpoint.store({3, 2}, std::span<const int>(values));
-  EXPECT_EQ(checkpoint.byte_count(3), sizeof(int) * values.size());
-  checkpoint.begin_part(0);
-  EXPECT_TRUE(has(checkpoint, 2));
-  checkpoint.release(3);
-  EXPECT_FALSE(has(checkpoint, 2));
-  checkpoint.begin_part(1);
-  std::vector<int> kept;
-  EXPECT_TRUE(checkpoint.restore({3, 2}, kept));
-  EXPECT_EQ(kept, values);
-}
-
 TEST_F(CheckpointTest, AnotherKeyStartsAnew) {
   write_five();
   EXPECT_EQ(found("other"), std::vector<bool>(5, false));
