@@ -53,8 +53,8 @@ double weight_share(cpca::StorageCost cost, const cpca::Encoding& encoding) {
 
 /// One cluster with all vectors is exact, or as many as there can be; the signal itself is, too.
 std::size_t most_useful_bytes(const cpca::StorageCost& cost, const cpca::Size& size) {
-  const int most = std::min(static_cast<int>(size.dimension), cost.max_component_count);
-  return std::max(size.point_count * size.dimension * sizeof(float), cost.bytes(size, {1, most}));
+  return std::max(size.point_count * size.dimension * sizeof(float),
+                  cost.bytes(size, cost.whole(size)));
 }
 
 class FormatSearch {

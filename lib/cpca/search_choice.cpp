@@ -56,6 +56,16 @@ std::size_t StorageCost::bytes(const Encoding& encoding) const {
                static_cast<std::size_t>(encoding.cluster_count), vectors);
 }
 
+Choice StorageCost::whole(const Size& size) const {
+  return {1, std::min(static_cast<int>(size.dimension), max_component_count)};
+}
+
+std::size_t Bound::most_bytes(const Size& size) const {
+  if (max_bytes) return *max_bytes;
+  return std::max(2 * size.point_count * size.dimension * sizeof(float) + cost.bytes_of_headers,
+                  cost.bytes(size, cost.whole(size)));
+}
+
 double weighted_energy(std::span<const float> signal, std::size_t point_count,
                        std::span<const float> point_weights) {
   const std::size_t n = signal.size() / point_count;

@@ -35,6 +35,9 @@ struct StorageCost {
   /// Of an encoding in which every cluster has as many vectors.
   std::size_t bytes(const Size& size, const Choice& choice) const;
   std::size_t bytes(const Encoding& encoding) const;
+
+  /// One cluster with all vectors, which is exact, or as many as there can be.
+  Choice whole(const Size& size) const;
 };
 
 enum class Norm {
@@ -48,6 +51,13 @@ struct Bound {
   Norm norm = Norm::rmse;
   std::optional<std::size_t> max_bytes;  ///< of what `cost` says
   StorageCost cost = {};
+
+  /// Largest errors of points are what encodings are tightened to.
+  bool is_tight() const { return max_error && norm == Norm::maximum; }
+
+  /// max_bytes, or beyond what is no use: twice the signal, as what a few points need may exceed it
+  /// once, or one cluster with all vectors, which for few points is more.
+  std::size_t most_bytes(const Size& size) const;
 };
 
 /// Error of an encoding by a norm; squares of points, of errors and energies alike, are multiplied

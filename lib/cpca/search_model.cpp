@@ -32,11 +32,9 @@ std::optional<int> fewest_clusters(const ErrorModel& model, int component_count,
   return enough;
 }
 
-/// The most clusters of a size, 0 when none are as small. Without max_bytes that is twice the
-/// signal: what a few points need may exceed it once.
+/// The most clusters within the bytes of the aim, 0 when none are as small.
 int most_clusters_within(const Bound& aim, const Size& size, int component_count, int most) {
-  const std::size_t max_bytes =
-      aim.max_bytes.value_or(2 * size.point_count * size.dimension * sizeof(float));
+  const std::size_t max_bytes = aim.most_bytes(size);
   const auto bytes = [&](int clusters) {
     return aim.cost.bytes(size, {clusters, component_count});
   };
@@ -117,8 +115,8 @@ void ErrorModel::correct_alone(const Choice& choice, double error) {
 }
 
 Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int most_clusters) {
-  const int most_components = std::min({static_cast<int>(size.dimension),
-                                        aim.cost.max_component_count, model.most_components() + 2});
+  const int most_components =
+      std::min(aim.cost.whole(size).component_count, model.most_components() + 2);
   struct Rated {
     Choice choice;
     double worth, next;  // less is better
@@ -142,18 +140,17 @@ Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int m
       take(best, {rated.choice, rated.next, rated.worth});
     }
   }
-  if (!closest) {
+  if (!closest) {  // one cluster is always within most_bytes() without max_bytes
     throw_failed("no encoding is as small",
                  {.found = fmt::format("at least {} bytes", aim.cost.bytes(size, {1, 0})),
-                  .expected = fmt::format("at most {}", aim.max_bytes.value_or(0))});
+                  .expected = fmt::format("at most {}", aim.most_bytes(size))});
   }
   return best ? best->choice : closest->choice;
 }
 
 std::optional<Choice> choose_most(const Bound& aim, const Size& size, int most_clusters,
                                   int component_count) {
-  if (component_count < 0 ||
-      component_count > std::min(static_cast<int>(size.dimension), aim.cost.max_component_count)) {
+  if (component_count < 0 || component_count > aim.cost.whole(size).component_count) {
     return std::nullopt;
   }
   const int most = most_clusters_within(aim, size, component_count, most_clusters);

@@ -88,8 +88,7 @@ class Surveyor {
     options_.point_weights = sample.point_weights;
     options_.iterations = std::min(options.iterations, kIterations);
     options_.checkpoint = nullptr;  // whole columns are kept
-    // What a few points need may exceed the signal once.
-    most_bytes_ = bound.max_bytes.value_or(2 * sample.all_count * size_.dimension * sizeof(float));
+    most_bytes_ = bound.most_bytes(size_);
   }
 
   Column encode(int cluster_count) {
@@ -138,7 +137,7 @@ class Surveyor {
 
   /// As many as fit the bytes and the sample has points for.
   int most_components(int cluster_count) const {
-    int most = std::min(dimension_, bound_.cost.max_component_count);
+    int most = bound_.cost.whole(size_).component_count;
     const double points = sample_.points_per_cluster(cluster_count);
     if (sample_.count < sample_.all_count) {
       most = std::min(most, static_cast<int>(points / kPointsPerVector) - 1);

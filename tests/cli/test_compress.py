@@ -1,6 +1,7 @@
 """prt-compress: methods, signals of any origin, weights, the search, and what cannot be meant."""
 
 import math
+import random
 import struct
 import unittest
 
@@ -62,6 +63,17 @@ class Signal(SignalTest):
         self.assertLessEqual(self.compress("--max-bytes", 10000)["bytes"], 10000)
         self.refused(FAILED, "no encoding is as small", "prt-compress", "--signal", self.signal,
                      "--max-bytes", 10)
+
+    def test_search_of_a_few_points_finds_the_exact_encoding(self):
+        for count in (1, 5, 64):
+            numbers = random.Random(count)
+            self.signal.write_bytes(npy([[numbers.gauss(0, 1) for _ in range(12)]
+                                         for _ in range(count)]))
+            exact = self.compress("--method", "pca", "--components", 12)["bytes"]
+            for bound in ((0.1, "rmse"), (0.1, "max"), (1e-6, "rmse")):
+                report = self.compress("--max-error", bound[0], "--norm", bound[1])
+                self.assertLessEqual(report["relative_" + bound[1]], bound[0])
+                self.assertLessEqual(report["bytes"], exact)
 
     def test_coefficient_weights_move_the_error(self):
         weights = self.write("w.npy", npy([[100.0] * 6 + [0.01] * 6]))

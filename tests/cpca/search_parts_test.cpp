@@ -84,6 +84,22 @@ TEST(Choose, IsTheBestOfAll) {
   EXPECT_THROW(choose(model, {.max_error = {}, .max_bytes = 10000}, size, 2500), Error);
 }
 
+// Headers alone may be more than twice a small signal.
+TEST(Bound, WithoutBytesLeavesRoomForOneClusterWithAllVectors) {
+  Bound bound{.max_error = 0.1, .max_bytes = {}, .cost = {.bytes_of_headers = 1500}};
+  for (const std::size_t count : {1u, 5u, 12u, 64u, 5000u}) {
+    const Size size{count, 12};
+    EXPECT_EQ(bound.cost.whole(size), (Choice{1, 12}));
+    EXPECT_GE(bound.most_bytes(size), bound.cost.bytes(size, {1, 12}));
+    EXPECT_GE(bound.most_bytes(size), 1500 + 2 * sizeof(float) * 12 * count);
+    EXPECT_EQ(choose_most(bound, size, 1, 12), (Choice{1, 12}));
+  }
+  bound.cost.max_component_count = 3;
+  EXPECT_EQ(bound.cost.whole({5, 12}), (Choice{1, 3}));
+  bound.max_bytes = 100;
+  EXPECT_EQ(bound.most_bytes({5, 12}), 100u);
+}
+
 // Without the correction for degrees of freedom the sample's clusters look 10 to 30% too good.
 TEST(Survey, TellsTheErrorsOfAllPointsFromAQuarter) {
   constexpr int kDimension = 24;

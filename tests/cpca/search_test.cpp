@@ -195,6 +195,24 @@ TEST(EncodeWithin, SaysWhatCannotBe) {
                Error);
 }
 
+// Noise in all directions, beside which a few clusters with many vectors are no smaller.
+TEST(EncodeWithin, TakesNoMoreThanOneClusterWithAllVectors) {
+  constexpr std::size_t kPointCount = 1500;
+  std::vector<float> signal = random_values(kPointCount * kSearchDimension, 3);
+  const auto surface = make_surface(kPointCount, kSearchDimension);
+  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = surface[i] + 0.05f * signal[i];
+  for (const Method method : {Method::fixed, Method::iterative}) {
+    for (const double max_error : {1e-3, 1e-6}) {
+      const Bound bound{.max_error = max_error, .max_bytes = {}};
+      const Encoding found =
+          encode_within(bound, method, signal, kSearchDimension, {}).encoded.encoding;
+      EXPECT_LE(relative_error(found, signal, Norm::rmse), max_error);
+      EXPECT_LE(bound.cost.bytes(found),
+                bound.cost.bytes({kPointCount, kSearchDimension}, {1, kSearchDimension}));
+    }
+  }
+}
+
 TEST(EncodeWithin, TakesDegenerateSignals) {
   for (const DegenerateCase& test : degenerate_cases()) {
     for (const Norm norm : {Norm::rmse, Norm::maximum}) {
