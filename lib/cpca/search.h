@@ -4,7 +4,7 @@
 // A survey of a sample of the points (cpca/search_survey.h) predicts the error of every choice
 // (cpca/search_model.h). The best is encoded at full strength. What comes out corrects the
 // prediction, and the next encodings, if any, start from seeds or from the clusters of the one
-// before.
+// before. Which these are is up to cpca/search_strategy.h; encodings are made here.
 //
 // All this takes about three encodings at most, in the unit of cpca/search_cost.h: what the kept
 // choice would have taken alone, from seeds to the bound. The survey stops where another part of it
@@ -18,23 +18,13 @@
 
 #include "cpca/method.h"
 #include "cpca/search_choice.h"
+#include "cpca/search_trial.h"
 
 namespace prt::cpca {
 
 /// Encodings that a search which may stop is not expected to take more than: a little less than
 /// three, as the next one may take more than expected.
 constexpr double kMostSearchCost = 2.85;
-
-/// An encoding that was made on the way.
-struct Trial {
-  Choice choice;
-  int first_clusters = 0;   ///< before it was tightened
-  double error = 0.0;       ///< relative, by the norm of the bound
-  std::size_t bytes = 0;    ///< by the cost of the bound
-  bool is_warm = false;     ///< started from the one before
-  double seconds = 0.0;     ///< of whichever run made it
-  bool is_resumed = false;  ///< made by an interrupted run
-};
 
 struct Found {
   Encoded encoded;

@@ -55,8 +55,8 @@ struct Bound {
   /// Largest errors of points are what encodings are tightened to.
   bool is_tight() const { return max_error && norm == Norm::maximum; }
 
-  /// max_bytes, or beyond what is no use: twice the signal, as what a few points need may exceed it
-  /// once, or one cluster with all vectors, which for few points is more.
+  /// max_bytes, or more than which is of no use: twice the signal, as what a few points need may
+  /// exceed it once, or one cluster with all vectors, which for few points is more.
   std::size_t most_bytes(const Size& size) const;
 };
 

@@ -38,12 +38,12 @@ class CostModel {
   double next(const Choice& choice, bool is_warm) const;
   /// What a trial would have taken from seeds.
   double alone(const Choice& choice, bool is_warm, const Effort& effort) const;
-
- private:
+  /// Products as they are expected before any was learned from.
   double work(const Choice& choice, bool is_warm) const {
     return (is_warm ? warm_work : encoding_work)(method_, size_, choice, iterations_);
   }
 
+ private:
   const Method method_;
   const Size size_;
   const int iterations_;

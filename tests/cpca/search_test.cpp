@@ -213,6 +213,23 @@ TEST(EncodeWithin, TakesNoMoreThanOneClusterWithAllVectors) {
   }
 }
 
+// A survey does not take more than 256 coefficients apart for one cluster with all vectors.
+TEST(EncodeWithin, FailsOnlyBeyondOneClusterWithAllVectors) {
+  constexpr int kDimension = 260;
+  const auto noise = random_values(400 * kDimension, 2);
+  Bound bound{.max_error = 1e-6, .max_bytes = {}, .cost = {.max_component_count = kDimension}};
+  for (const Norm norm : {Norm::rmse, Norm::maximum}) {
+    bound.norm = norm;
+    const Found found =
+        encode_within(bound, Method::iterative, noise, kDimension, {.iterations = 2});
+    EXPECT_LE(relative_error(found.encoded.encoding, noise, norm), 1e-6);
+    EXPECT_EQ(found.trials[found.kept].choice, (Choice{1, kDimension}));
+  }
+  bound.cost.max_component_count = 20;
+  EXPECT_THROW(encode_within(bound, Method::iterative, noise, kDimension, {.iterations = 2}),
+               Error);
+}
+
 TEST(EncodeWithin, TakesDegenerateSignals) {
   for (const DegenerateCase& test : degenerate_cases()) {
     for (const Norm norm : {Norm::rmse, Norm::maximum}) {
