@@ -14,7 +14,7 @@ namespace {
 
 /// Power steps after a classification, and before the first, for vectors beyond those of the
 /// iterative method.
-constexpr int kSteps = 2, kFirstSteps = 8;
+constexpr int kAdaptSteps = 2, kFirstAdaptSteps = 8;
 
 std::vector<std::size_t> point_counts(const PointsByCluster& points) {
   std::vector<std::size_t> counts;
@@ -61,7 +61,7 @@ class Adaptation {
       // The first measures what the iterative method left, so that this is never worse.
       const bool is_first = i == 0;
       const bool is_tight = !is_first && i % kCycle <= kTight && i + kCycle - kTight <= count;
-      clusterer_.update(allocation_.counts, most_, is_first ? kFirstSteps : kSteps);
+      clusterer_.update(allocation_.counts, most_, is_first ? kFirstAdaptSteps : kAdaptSteps);
       if (!is_first) allocate_vectors(is_tight);
       std::vector<std::uint32_t> labels = clusterer_.labels();
       // What a point that moves to a cluster of more vectors costs is taken from where it would

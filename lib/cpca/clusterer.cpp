@@ -12,7 +12,7 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kPointBlock = 256;
+constexpr std::size_t kClassifyBlock = 256;
 /// Clusters tried between full passes.
 constexpr std::size_t kNeighbours = 16;
 /// Coordinates that a cluster is first looked at in, where there are at least twice as many.
@@ -104,8 +104,8 @@ std::vector<Clusterer::Block> Clusterer::make_blocks() const {
   std::vector<Block> blocks;
   for (std::size_t k = 0; k < subspaces_.cluster_count(); ++k) {
     const auto points = sorted_.of(k);
-    for (std::size_t done = 0; done < points.size(); done += kPointBlock) {
-      blocks.push_back({k, points.subspan(done, std::min(kPointBlock, points.size() - done))});
+    for (std::size_t done = 0; done < points.size(); done += kClassifyBlock) {
+      blocks.push_back({k, points.subspan(done, std::min(kClassifyBlock, points.size() - done))});
     }
   }
   return blocks;

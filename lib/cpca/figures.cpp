@@ -11,14 +11,14 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 16;
+constexpr std::size_t kSumBlock = 1 << 16;
 
 double energy(std::span<const float> values) {
-  std::vector<double> sums(block_count(values.size(), kBlock));
-  parallel_for(values.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> sums(block_count(values.size(), kSumBlock));
+  parallel_for(values.size(), kSumBlock, [&](std::size_t begin, std::size_t end) {
     double lanes[8] = {};
     for (std::size_t i = begin; i < end; ++i) lanes[i % 8] += double{values[i]} * double{values[i]};
-    for (double lane : lanes) sums[begin / kBlock] += lane;
+    for (double lane : lanes) sums[begin / kSumBlock] += lane;
   });
   double sum = 0.0;
   for (double part : sums) sum += part;

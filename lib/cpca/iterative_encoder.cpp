@@ -13,7 +13,7 @@ namespace prt::cpca {
 namespace {
 
 /// Power steps after a classification, and for clusters whose vectors start from nothing.
-constexpr int kSteps = 2, kFirstSteps = 8;
+constexpr int kLevelSteps = 2, kFirstLevelSteps = 8;
 /// Full passes that a level begins with.
 constexpr int kFull = 2;
 /// Of the last iterations, those in all coordinates where the others knew the first axes only: at
@@ -106,7 +106,7 @@ void IterativeEncoder::finish_level(int count) {
   move_to_space(count);
   for (int i = 0; i < last; ++i) {
     levels_.back().errors.push_back(clusterer_.classify(false).error);
-    update(count, kSteps);
+    update(count, kLevelSteps);
   }
 }
 
@@ -132,14 +132,14 @@ void IterativeEncoder::update_for(int count, double error) {
     is_away_ = false;
   } else {
     clusterer_.set_dimension(space_.dimension());
-    update(count, kSteps);
+    update(count, kLevelSteps);
   }
 }
 
 void IterativeEncoder::move_to(const Rows& rows, std::size_t dimension, int count) {
   clusterer_.set_rows(rows);
   clusterer_.set_dimension(dimension);
-  update(count, kFirstSteps);
+  update(count, kFirstLevelSteps);
 }
 
 void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
@@ -157,7 +157,7 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
     if (count == 0) {
       update_for(count, level.errors.back());
     } else {
-      update(count, kSteps);
+      update(count, kLevelSteps);
     }
     progress_.advance(1);
     settled = pass.moved_count == 0;

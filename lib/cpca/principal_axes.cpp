@@ -13,9 +13,9 @@ namespace {
 
 using linalg::Transpose;
 
-constexpr std::size_t kBlock = 512, kColumnBlock = 96;
+constexpr std::size_t kAxesBlock = 512, kAxesColumns = 96;
 /// Of the registers that kernels read rows with, at most.
-constexpr std::size_t kLanes = 16;
+constexpr std::size_t kAxesLanes = 16;
 /// Points of the sample for each coefficient.
 constexpr std::size_t kSampleShare = 12;
 
@@ -43,10 +43,10 @@ Draw draw_points(std::span<const float> signal, std::span<const float> mean) {
 }
 
 std::vector<float> mean_of(std::span<const float> signal, std::size_t n) {
-  const std::size_t point_count = signal.size() / n, blocks = block_count(point_count, kBlock);
+  const std::size_t point_count = signal.size() / n, blocks = block_count(point_count, kAxesBlock);
   std::vector<double> sums(blocks * n);
-  parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
-    double* sum = &sums[begin / kBlock * n];
+  parallel_for(point_count, kAxesBlock, [&](std::size_t begin, std::size_t end) {
+    double* sum = &sums[begin / kAxesBlock * n];
     for (std::size_t p = begin; p < end; ++p) {
       for (std::size_t i = 0; i < n; ++i) sum[i] += double{signal[p * n + i]};
     }
@@ -64,10 +64,10 @@ std::vector<float> mean_of(std::span<const float> signal, std::size_t n) {
 std::vector<float> find_axes(const Draw& points, std::size_t count) {
   const std::size_t n = points.mean.size();
   std::vector<double> covariance(n * n);
-  parallel_for(n, kColumnBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_for(n, kAxesColumns, [&](std::size_t begin, std::size_t end) {
     std::vector<float> product((end - begin) * (n - begin));
-    for (std::size_t done = 0; done < points.count; done += kBlock) {
-      const std::size_t some = std::min(kBlock, points.count - done);
+    for (std::size_t done = 0; done < points.count; done += kAxesBlock) {
+      const std::size_t some = std::min(kAxesBlock, points.count - done);
       const std::vector<float> rows = points.rows(done, done + some);
       const float* first = rows.data();
       linalg::gemm(1.0f, {first + begin, some, end - begin, n}, Transpose::yes,
@@ -108,9 +108,9 @@ Turned turn(const PrincipalAxes& axes, std::span<const float> points) {
 /// The greatest number of each coordinate becomes the greatest that 16 bits hold.
 std::vector<float> find_scales(const PrincipalAxes& axes, std::span<const float> signal) {
   const std::size_t n = axes.mean.size(), point_count = signal.size() / n;
-  std::vector<float> greatest(block_count(point_count, kBlock) * axes.stride);
-  parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
-    float* most = &greatest[begin / kBlock * axes.stride];
+  std::vector<float> greatest(block_count(point_count, kAxesBlock) * axes.stride);
+  parallel_for(point_count, kAxesBlock, [&](std::size_t begin, std::size_t end) {
+    float* most = &greatest[begin / kAxesBlock * axes.stride];
     const Turned turned = turn(axes, signal.subspan(begin * n, (end - begin) * n));
     for (std::size_t p = 0; p < end - begin; ++p) {
       const float* row = &turned.rows[p * axes.stride];
@@ -156,14 +156,14 @@ PrincipalAxes find_principal_axes(std::span<const float> signal, std::size_t dim
   PrincipalAxes axes;
   axes.mean = mean_of(signal, dimension);
   axes.axes = find_axes(draw_points(signal, axes.mean), count);
-  axes.stride = (count + kLanes - 1) / kLanes * kLanes;
+  axes.stride = (count + kAxesLanes - 1) / kAxesLanes * kAxesLanes;
   axes.scales = find_scales(axes, signal);
   axes.rows.resize(point_count * axes.stride);
   const std::size_t width = 1 + axes.stride;
-  std::vector<double> squares(block_count(point_count, kBlock) * width), totals(width);
-  parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> squares(block_count(point_count, kAxesBlock) * width), totals(width);
+  parallel_for(point_count, kAxesBlock, [&](std::size_t begin, std::size_t end) {
     round_rows(axes, turn(axes, signal.subspan(begin * dimension, (end - begin) * dimension)),
-               begin, weights, &squares[begin / kBlock * width]);
+               begin, weights, &squares[begin / kAxesBlock * width]);
   });
   for (std::size_t i = 0; i < squares.size(); ++i) totals[i % width] += squares[i];
   axes.tails.push_back(totals[0]);

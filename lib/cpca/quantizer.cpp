@@ -16,7 +16,7 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kPointBlock = 14 * 32;
+constexpr std::size_t kNearestBlock = 14 * 32;
 constexpr std::uint32_t kNone = ~0u;
 
 /// Runs the iterations. The sum of each cluster is kept in double and follows the points that move,
@@ -87,7 +87,7 @@ class Quantizer {
 
   void classify() {
     const NearestMean nearest(result_.means, origin_);
-    parallel_for(result_.labels.size(), kPointBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_for(result_.labels.size(), kNearestBlock, [&](std::size_t begin, std::size_t end) {
       nearest.classify(signal_, begin, end, result_.labels);
     });
   }
@@ -126,7 +126,7 @@ class Quantizer {
     update_means();
     const std::size_t point_count = old_labels_.size();
     std::vector<double> errors(point_count);
-    parallel_for(point_count, kPointBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_for(point_count, kNearestBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         errors[p] = weight(p) * squared_distance(row(p), mean(result_.labels[p]));
       }

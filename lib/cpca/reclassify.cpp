@@ -17,7 +17,7 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kReclassifyBlock = 256;
 
 /// The triangles that each point is a corner of, by number, each once.
 struct TrianglesOfPoints {
@@ -147,7 +147,7 @@ class Reclassifier {
 
   void queue_all() {
     std::vector<std::optional<Move>> moves(encoding_.point_count);
-    parallel_for(moves.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_for(moves.size(), kReclassifyBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) moves[p] = best_move(static_cast<std::uint32_t>(p));
     });
     std::vector<Queued> entries;

@@ -19,17 +19,6 @@
 
 namespace prt::cpca {
 
-namespace {
-
-struct Made {
-  Encoded encoded;
-  Trial trial;
-  Effort seconds, flops;
-  double alone_seconds = 0.0, alone_flops = 0.0;
-};
-
-}  // namespace
-
 class Search::State {
  public:
   State(Method method, std::span<const float> signal, int dimension, const Options& options)
@@ -81,6 +70,13 @@ class Search::State {
   }
 
  private:
+  struct Made {
+    Encoded encoded;
+    Trial trial;
+    Effort seconds, flops;
+    double alone_seconds = 0.0, alone_flops = 0.0;
+  };
+
   void survey() {
     const Stopwatch stopwatch;
     survey_ = make_survey(first_aim(bound_), method_, signal_, dimension_, options_);

@@ -12,7 +12,7 @@ namespace prt::cpca {
 
 namespace {
 
-constexpr std::size_t kBlock = 512;
+constexpr std::size_t kErrorBlock = 512;
 
 std::size_t total(const StorageCost& cost, const Size& size, std::size_t weight_count,
                   std::size_t cluster_count, std::size_t vector_count) {
@@ -69,8 +69,8 @@ std::size_t Bound::most_bytes(const Size& size) const {
 double weighted_energy(std::span<const float> signal, std::size_t point_count,
                        std::span<const float> point_weights) {
   const std::size_t n = signal.size() / point_count;
-  std::vector<double> sums(block_count(point_count, kBlock));
-  parallel_for(point_count, kBlock, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> sums(block_count(point_count, kErrorBlock));
+  parallel_for(point_count, kErrorBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       double lanes[8] = {};
       for (std::size_t i = 0; i < n; ++i) {
@@ -79,7 +79,8 @@ double weighted_energy(std::span<const float> signal, std::size_t point_count,
       }
       double square = 0.0;
       for (const double lane : lanes) square += lane;
-      sums[begin / kBlock] += square * (point_weights.empty() ? 1.0 : double{point_weights[p]});
+      sums[begin / kErrorBlock] +=
+          square * (point_weights.empty() ? 1.0 : double{point_weights[p]});
     }
   });
   double sum = 0.0;

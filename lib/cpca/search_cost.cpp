@@ -9,7 +9,7 @@ namespace {
 /// As the iterative encoder does it without axes (cpca/iterative_encoder.cpp): passes over all
 /// clusters, the others are over near ones; power steps. And alternations of the adaptive one, for
 /// each iteration, one of five over all clusters.
-constexpr double kFullPasses = 2.0, kNear = 16.0, kSteps = 2.0, kAlternations = 2.0,
+constexpr double kFullPasses = 2.0, kNear = 16.0, kPowerSteps = 2.0, kAlternationsEach = 2.0,
                  kFullShare = 0.2;
 /// Of one cluster: nothing moves.
 constexpr int kSettled = 3;
@@ -19,15 +19,15 @@ double level_work(const Choice& choice, int vectors, int iterations) {
   const double all = choice.cluster_count, near = std::min(kNear, all),
                count = static_cast<double>(vectors) + 1.0;
   const double full = vectors == 0 ? iterations : std::min<double>(kFullPasses, iterations);
-  return count * (2.0 * (full * all + (iterations - full) * near) + 4.0 * kSteps * iterations);
+  return count * (2.0 * (full * all + (iterations - full) * near) + 4.0 * kPowerSteps * iterations);
 }
 
 double adaptation_work(const Choice& choice, int iterations) {
   const double all = choice.cluster_count, near = std::min(kNear, all),
                vectors = choice.component_count;
-  return kAlternations * iterations *
+  return kAlternationsEach * iterations *
          (2.0 * (vectors + 1.0) * (kFullShare * all + (1.0 - kFullShare) * near) +
-          4.0 * kSteps * 2.0 * vectors);
+          4.0 * kPowerSteps * 2.0 * vectors);
 }
 
 double static_work(const Size& size, const Choice& choice, int iterations) {

@@ -13,9 +13,9 @@ namespace prt::cpca {
 namespace {
 
 /// Exponents that occur, and that of one column alone. Errors below the least count as that.
-constexpr double kSteepest = -2.0, kFlattest = -0.02, kUsual = -0.5, kLeastError = 1e-12;
+constexpr double kSteepest = -2.0, kFlattest = -0.02, kUsual = -0.5, kLeastLogged = 1e-12;
 
-double log_of(double error) { return std::log(std::max(error, kLeastError)); }
+double log_of(double error) { return std::log(std::max(error, kLeastLogged)); }
 
 /// The fewest clusters of an error, if any do.
 std::optional<int> fewest_clusters(const ErrorModel& model, int component_count, double max_error,

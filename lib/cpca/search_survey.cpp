@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kIterations = 4, kStep = 4, kMostColumns = 4;
 /// One point of so many is in the sample, but so many at least.
-constexpr std::size_t kSampleShare = 4, kLeastSample = 128;
+constexpr std::size_t kSurveyShare = 4, kLeastSample = 128;
 /// Of one encoding: what the survey may take before another column.
 constexpr double kMostCost = 0.75;
 /// More coefficients than that are not taken apart for one cluster with all vectors: eigenvectors
@@ -26,7 +26,7 @@ constexpr int kMostWhole = 256;
 /// Points of a cluster of the sample, at least; and per vector and mean.
 constexpr std::size_t kPointsPerCluster = 6;
 constexpr double kPointsPerVector = 1.7;
-constexpr std::size_t kMostClusters = 65536, kSignalPointsPerCluster = 2, kBlock = 512;
+constexpr std::size_t kMostClusters = 65536, kSignalPointsPerCluster = 2, kCopyBlock = 512;
 
 struct Sample {
   std::vector<float> rows, weights;  ///< empty: all points
@@ -49,7 +49,7 @@ void draw(Sample& sample, std::span<const float> signal, std::size_t n, const Op
     points[s] = begin + random.below(static_cast<std::uint32_t>(length));
   }
   sample.rows.resize(sample.count * n);
-  parallel_for(sample.count, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel_for(sample.count, kCopyBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       std::copy_n(&signal[points[s] * n], n, &sample.rows[s * n]);
     }
@@ -64,7 +64,7 @@ Sample make_sample(std::span<const float> signal, std::size_t n, const Options& 
   Sample sample;
   sample.all_count = signal.size() / n;
   sample.count =
-      std::min(sample.all_count, std::max(kLeastSample, sample.all_count / kSampleShare));
+      std::min(sample.all_count, std::max(kLeastSample, sample.all_count / kSurveyShare));
   sample.signal = signal;
   sample.point_weights = options.point_weights;
   if (sample.count < sample.all_count) draw(sample, signal, n, options);

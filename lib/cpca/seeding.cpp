@@ -14,7 +14,7 @@ namespace prt::cpca {
 namespace {
 
 constexpr std::size_t kSampleFloats = std::size_t{1} << 20, kMinPerMean = 16, kMaxPerMean = 64;
-constexpr std::size_t kBlock = 512;
+constexpr std::size_t kSeedingBlock = 512;
 
 /// One point out of each of equally long stretches of so many.
 std::vector<std::size_t> draw_points(std::size_t point_count, std::size_t sample_count,
@@ -36,8 +36,8 @@ std::size_t draw(std::span<const double> weights, std::span<const double> block_
   double rest = total * random.uniform();
   std::size_t block = 0;
   while (block + 1 < block_sums.size() && rest >= block_sums[block]) rest -= block_sums[block++];
-  const std::size_t end = std::min(weights.size(), (block + 1) * kBlock);
-  std::size_t chosen = block * kBlock;
+  const std::size_t end = std::min(weights.size(), (block + 1) * kSeedingBlock);
+  std::size_t chosen = block * kSeedingBlock;
   for (std::size_t i = chosen; i < end; ++i) {
     if (weights[i] <= 0.0) continue;
     chosen = i;
@@ -99,7 +99,7 @@ std::vector<float> seed_means(std::span<const float> signal, std::size_t dimensi
   const auto lower = kernel_for(simd_level(), lower_avx512, lower_avx2, lower_baseline);
   std::vector<double> distances(sample_count, std::numeric_limits<double>::infinity());
   std::vector<double> chances(point_weights.empty() ? 0 : sample_count);  // weighted distances
-  std::vector<double> block_sums(block_count(sample_count, kBlock));
+  std::vector<double> block_sums(block_count(sample_count, kSeedingBlock));
   std::size_t chosen = random.below(static_cast<std::uint32_t>(sample_count));
   const auto has_weight = [&](std::size_t s) {
     return point_weights.empty() || point_weights[points[s]] > 0.0f;
@@ -111,8 +111,8 @@ std::vector<float> seed_means(std::span<const float> signal, std::size_t dimensi
   for (std::size_t k = 0; k < cluster_count; ++k) {
     const float* mean = &sample[chosen * stride];
     means.insert(means.end(), mean, mean + dimension);
-    parallel_for(sample_count, kBlock, [&](std::size_t begin, std::size_t end) {
-      double& sum = block_sums[begin / kBlock];
+    parallel_for(sample_count, kSeedingBlock, [&](std::size_t begin, std::size_t end) {
+      double& sum = block_sums[begin / kSeedingBlock];
       sum = lower(&sample[begin * stride], stride, mean, &distances[begin], end - begin);
       if (chances.empty()) return;
       sum = 0.0;

@@ -13,10 +13,10 @@ namespace prt::cpca {
 namespace {
 
 /// Clusters beyond it are worth several threads.
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kMomentBlock = 4096;
 /// Variances below this share of the largest are rounding: products of points and vectors in single
 /// precision make those of the points λ uncertain by 1e-7 √(λ λ_1).
-constexpr double kRankTolerance = 1e-10;
+constexpr double kGramTolerance = 1e-10;
 
 class Update {
  public:
@@ -43,7 +43,7 @@ class Update {
     std::copy(pairs.values.begin(), pairs.values.end(), subspaces_.variances[cluster_].begin());
     subspaces_.held[cluster_] = static_cast<std::uint32_t>(
         turn_vectors(std::span(moments).subspan(subspaces_.stride), pairs.vectors,
-                     kRankTolerance * pairs.values[0], subspaces_, cluster_, count));
+                     kGramTolerance * pairs.values[0], subspaces_, cluster_, count));
   }
 
   /// Holds one vector more: towards the point, as far as the others do not reach.
@@ -71,11 +71,11 @@ class Update {
 
   std::vector<double> find_moments(std::size_t vector_count) const {
     const std::size_t size = (1 + vector_count) * subspaces_.stride,
-                      blocks = block_count(points_.size(), kBlock);
+                      blocks = block_count(points_.size(), kMomentBlock);
     std::vector<double> moments(blocks * size);
-    parallel_for(points_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_for(points_.size(), kMomentBlock, [&](std::size_t begin, std::size_t end) {
       add_moments(rows_, subspaces_, {cluster_, points_.subspan(begin, end - begin)}, vector_count,
-                  std::span(moments).subspan(begin / kBlock * size, size));
+                  std::span(moments).subspan(begin / kMomentBlock * size, size));
     });
     for (std::size_t b = 1; b < blocks; ++b) {
       for (std::size_t i = 0; i < size; ++i) moments[i] += moments[b * size + i];

@@ -24,7 +24,7 @@ constexpr double kSplitShare = 0.5;
 /// Weights of points; they are multiplied with their error, as a share of the limit, and some more.
 constexpr float kLeastWeight = 1e-2f, kMostWeight = 1e3f, kMore = 0.1f;
 /// Power steps after a classification, and where vectors start from nothing.
-constexpr int kSteps = 1, kFirstSteps = 8;
+constexpr int kTightenSteps = 1, kFirstTightenSteps = 8;
 
 class Tightener {
  public:
@@ -60,7 +60,7 @@ class Tightener {
     if (restore_state(options_.checkpoint, name, members)) {
       weigh_rows();
     } else {
-      update(kFirstSteps);
+      update(kFirstTightenSteps);
     }
     for (; i < kMostIterations; ++i) {
       if (i > 0 && i % kFullPeriod == 0) store_state(options_.checkpoint, name, members);
@@ -73,7 +73,7 @@ class Tightener {
         if (wanted_.size() + parents.size() > static_cast<std::size_t>(most_clusters)) break;
         split(parents);
       }
-      update(kSteps);
+      update(kTightenSteps);
     }
     return i;
   }
