@@ -223,11 +223,14 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
   const std::size_t few = sample.all_count * bound.cost.bytes_per_weight / (8 * n * sizeof(float));
   Survey survey;
   survey.sampled_count = sample.count;
-  const auto add = [&](int count) { survey.model.add(surveyor.encode(count)); };
+  int column_count = 0;
+  const auto add = [&](int count) {
+    survey.model.add(surveyor.encode(count));
+    ++column_count;
+  };
   if (dimension <= kMostWhole || most == 1) add(1);
-  const int least = dimension <= kMostWhole ? 2 : 1;  // of other columns
-  int low = std::clamp(static_cast<int>(std::min<std::size_t>(few, kMostClusters)),
-                       std::min(least, most), most);
+  const int least = std::min(dimension <= kMostWhole ? 2 : 8, most);  // of other columns
+  int low = std::clamp(static_cast<int>(std::min<std::size_t>(few, kMostClusters)), least, most);
   if (most > 1) add(low);
   int high = low;
   for (int column = 1; column < kMostColumns && most > 1; ++column) {
@@ -241,7 +244,8 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
     } else if (!is_more && low > least && (column == 1 || count < low - low / 4)) {
       next = low = std::max(least, low / kStep);
     }
-    if (next == 0 || !surveyor.can_afford(survey.model, next, wanted)) break;
+    // One column alone tells nothing of other numbers of clusters, nor what an encoding takes.
+    if (next == 0 || (column_count > 1 && !surveyor.can_afford(survey.model, next, wanted))) break;
     add(next);
   }
   survey.flops = surveyor.flops();

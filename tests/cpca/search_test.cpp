@@ -77,6 +77,18 @@ TEST(EncodeWithin, TakesAboutThreeEncodingsOfWhatItKeeps) {
   }
 }
 
+// Small weights and many coefficients ask for few clusters, and one alone tells nothing of others:
+// with it alone a search went from 220 vectors down to 910,200 bytes, cluster by cluster.
+TEST(EncodeWithin, SurveysClustersOfManyCoefficientsToo) {
+  const auto signal = make_surface(1500, 300);
+  const Bound bound{
+      .max_error = 0.05, .max_bytes = {}, .cost = {.bytes_per_weight = 1, .weight_group = 4}};
+  const Found found = encode_within(bound, Method::iterative, signal, 300, {});
+  const double alone = alone_flops(found, bound, Method::iterative, signal, 300);
+  EXPECT_LE(found.encoded.flops, 3.2 * alone);
+  EXPECT_LT(bound.cost.bytes(found.encoded.encoding), 860'000u);
+}
+
 TEST(EncodeWithin, AnotherBoundTakesNoOtherSurvey) {
   const auto signal = make_surface(3000, kSearchDimension);
   Search search(Method::iterative, signal, kSearchDimension, {.iterations = 8});
