@@ -62,7 +62,7 @@ class Comparison {
     best_ = kept.choice;
     worth_ = least_ = worth(kept);
     const Stopwatch stopwatch;
-    const cpca::Encoded alone = encode({kept.first_clusters, kept.choice.component_count});
+    const cpca::Encoded alone = encode({kept.first_cluster_count, kept.choice.component_count});
     const double seconds = stopwatch.seconds();
     fmt::print(
         "search: {} clusters, {} components, {}; {:.2f} s; said to be {:.2f} encodings, {:.2f} of "

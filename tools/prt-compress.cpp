@@ -1,6 +1,4 @@
 // prt-compress: clustered PCA of a transfer signal, into the glTF file that it belongs to.
-#include <fmt/format.h>
-
 #include <map>
 #include <optional>
 #include <string>
@@ -9,6 +7,7 @@
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "compress/job.h"
+#include "compress/summary.h"
 #include "core/log.h"
 #include "linalg/product.h"
 
@@ -99,29 +98,6 @@ void add_storage(cli::Options& app, cli::Option* signal, cpca::StorageOptions& o
       ->excludes(signal);
 }
 
-/// "8 components", or of clusters that differ "0 to 13 components, 8.0 a point".
-std::string components_text(const nlohmann::ordered_json& json) {
-  const int most = json["component_count"].get<int>();
-  const int least = json["least_component_count"].get<int>();
-  if (least == most) return fmt::format("{} components", most);
-  return fmt::format("{} to {} components, {:.1f} a point", least, most,
-                     json["mean_component_count"].get<double>());
-}
-
-/// By the errors that counted, where the report has them.
-void log_summary(const nlohmann::ordered_json& json) {
-  const auto figure = [&](const std::string& name) {
-    return json.value("weighted_" + name, json[name].get<double>());
-  };
-  log::info(
-      "{} points of {} coefficients in {} clusters of {}: {:.3g} times smaller, "
-      "relative error {:.3f}% (SE {:.6g})",
-      json["point_count"].get<std::size_t>(), json["dimension"].get<int>(),
-      json["cluster_count"].get<int>(), components_text(json),
-      json["compression_ratio"].get<double>(), 100.0 * figure("relative_rmse"),
-      figure("squared_error"));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -142,6 +118,6 @@ int main(int argc, char** argv) {
                      {{job.output, {job.signal.empty() ? ".glb" : ".npz"}, job.model}},
                      tool.common());
     compress::run(job, report);
-    log_summary(report.json());
+    log::info("{}", compress::summary(report.json(), job.bound.norm));
   });
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "compress/format_search.h"
 #include "core/checkpoint.h"
 #include "core/hash.h"
@@ -15,7 +17,8 @@ namespace {
 
 cpca::Options make_options(const Job& job, const Input& input) {
   cpca::Options options;
-  options.cluster_count = job.cluster_count.value_or(options.cluster_count);
+  const auto point_count = static_cast<int>(input.transfer.values.size() / input.dimension);
+  options.cluster_count = job.cluster_count.value_or(std::min(options.cluster_count, point_count));
   options.component_count = job.component_count.value_or(options.component_count);
   if (job.method == "vq") options.component_count = 0;
   if (job.method == "pca") options.cluster_count = 1;

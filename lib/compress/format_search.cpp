@@ -27,6 +27,8 @@ constexpr double kMostReserve = 0.5;
 constexpr double kNoRounding = 1e-4;
 /// Errors are measured again in the signal's own coordinates, which rounds differently.
 constexpr double kMargin = 1e-5;
+/// Seconds: how a shorter search compares with an encoding is of no interest.
+constexpr double kNoticed = 1.0;
 
 /// As gltf::stored_bytes counts.
 cpca::StorageCost cost_in_model(const Job& job, WeightFormat format) {
@@ -76,6 +78,8 @@ class FormatSearch {
     std::exception_ptr failure;
     for (const WeightFormat format : formats()) {
       std::optional<Candidate> candidate;
+      // What is out of reach is so with finer weights too, but for what rounding took.
+      if (failure && job_.bound.max_error && format != WeightFormat::float32) continue;
       if (best_ && !is_lucky() && !search_.can_afford(best_->found)) break;
       try {
         candidate = search(format);
@@ -112,7 +116,8 @@ class FormatSearch {
 
   /// The smallest first.
   std::vector<WeightFormat> formats() const {
-    if (!input_.document) return {WeightFormat::float32};
+    const bool has_weights = cost_of(job_, WeightFormat::float32).max_component_count > 0;
+    if (!input_.document || !has_weights) return {WeightFormat::float32};
     if (job_.storage.weights) return {*job_.storage.weights};
     return {WeightFormat::unorm8, WeightFormat::unorm16, WeightFormat::float16,
             WeightFormat::float32};
@@ -188,7 +193,8 @@ class FormatSearch {
     const double left = is_first ? 1.0 : 0.0;  // an encoding for the other format
     cpca::Found found = search_.find(bound, cpca::kMostSearchCost - left);
     for (const cpca::Trial& trial : found.trials) {
-      nlohmann::ordered_json row = {{"cluster_count", trial.choice.cluster_count},
+      nlohmann::ordered_json row = {{"first_cluster_count", trial.first_cluster_count},
+                                    {"cluster_count", trial.choice.cluster_count},
                                     {"component_count", trial.choice.component_count},
                                     {"relative_error", trial.error},
                                     {"bytes", trial.bytes},
@@ -206,7 +212,8 @@ class FormatSearch {
     json_["search"]["seconds"] = found.seconds;
     json_["search"]["flops_cost"] = found.flops_cost();
     json_["search_cost"] = found.cost();
-    log::info("the search took as long as {:.2f} encodings", found.cost());
+    if (found.seconds < kNoticed) return;
+    log::info("the search took as long as {:.2f} encodings of what it kept", found.cost());
   }
 
   const Job& job_;

@@ -115,12 +115,12 @@ void rescale(double square, cpca::Encoded& encoded, cpca::Storage& storage) {
   storage.coherence->final_error *= square;
 }
 
-void warn_of_size(const nlohmann::ordered_json& json) {
+void warn_of_size(const Job& job, const nlohmann::ordered_json& json) {
   if (json["compression_ratio"].get<double>() >= 1.0) return;
-  log::warning(
-      "the result is larger than the signal: {} bytes, which were {}. Ask for fewer clusters or "
-      "components",
-      json["bytes"].get<std::size_t>(), json["signal_bytes"].get<std::size_t>());
+  const char* const advice = job.bound.max_error ? "Within a larger --max-error it may be smaller"
+                                                 : "Ask for fewer clusters or components";
+  log::warning("the result is larger than the signal: {} bytes, which were {}. {}",
+               json["bytes"].get<std::size_t>(), json["signal_bytes"].get<std::size_t>(), advice);
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ void run(const Job& job, Report& report) {
     report.add_output(job.output);
     remove_checkpoint(job.checkpoint.path);
   }
-  warn_of_size(report.json());
+  warn_of_size(job, report.json());
 }
 
 }  // namespace prt::compress

@@ -35,6 +35,9 @@ class Search::State {
   Found find(const Bound& bound, double most_cost) {
     const Stopwatch stopwatch;
     bound_ = bound;
+    best_.reset();  // of a bound that was out of reach
+    last_.reset();
+    bound.check_room(size_);
     if (!survey_) survey();
     Strategy strategy(bound, most_cost, size_, *survey_, flops_model_);
     while (const std::optional<Step> step = strategy.next(flops_)) {
@@ -88,7 +91,7 @@ class Search::State {
   /// encoding when these are near.
   Options options_of(const Step& step, std::vector<std::uint32_t>& labels) const {
     Options options = options_;
-    options.cluster_count = step.first_clusters;
+    options.cluster_count = step.first_cluster_count;
     options.component_count = step.choice.component_count;
     if (options.max_component_count == 0) {
       options.max_component_count =
@@ -111,8 +114,9 @@ class Search::State {
     // Room for another; fit_weights() knows them. {} would keep the room.
     if (best_) best_->encoded.encoding.weights = std::vector<float>();
     auto made = std::make_shared<Made>();
-    made->trial = {
-        .choice = step.choice, .first_clusters = step.first_clusters, .is_warm = step.is_warm};
+    made->trial = {.choice = step.choice,
+                   .first_cluster_count = step.first_cluster_count,
+                   .is_warm = step.is_warm};
     const std::uint32_t number = trial_number_++;
     const auto members = [&](Archive& archive) {
       cpca::archive(archive, made->encoded);
@@ -129,7 +133,7 @@ class Search::State {
       made->seconds.encoding = stopwatch.seconds();
       made->flops.encoding = made->encoded.flops;
       if (bound_.is_tight() && energy_ > 0.0 && !step.is_whole)
-        tighten(signal_, point_limit(), step.most_clusters, options, made->encoded);
+        tighten(signal_, point_limit(), step.most_cluster_count, options, made->encoded);
       made->trial.seconds = stopwatch.seconds();
       store_state(options_.checkpoint, {kTrialStage, number}, members);
       if (options_.checkpoint != nullptr) options_.checkpoint->release(options.checkpoint_stage);
@@ -146,7 +150,7 @@ class Search::State {
   }
 
   void learn_cost(const Step& step, Made& made) {
-    const Choice first{step.first_clusters, step.choice.component_count};
+    const Choice first{step.first_cluster_count, step.choice.component_count};
     if (!step.is_whole) {  // which another method may have made
       seconds_model_.learn(first, step.is_warm, made.seconds);
       flops_model_.learn(first, step.is_warm, made.flops);

@@ -1,10 +1,13 @@
 #include "cpca/search_choice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "cpca/error_limits.h"
 
@@ -64,6 +67,13 @@ std::size_t Bound::most_bytes(const Size& size) const {
   if (max_bytes) return *max_bytes;
   return std::max(2 * size.point_count * size.dimension * sizeof(float) + cost.bytes_of_headers,
                   cost.bytes(size, cost.whole(size)));
+}
+
+void Bound::check_room(const Size& size) const {
+  if (cost.bytes(size, {1, 0}) <= most_bytes(size)) return;
+  throw_failed("no encoding is as small",
+               {.found = fmt::format("at least {} bytes", cost.bytes(size, {1, 0})),
+                .expected = fmt::format("at most {}", most_bytes(size))});
 }
 
 double weighted_energy(std::span<const float> signal, std::size_t point_count,

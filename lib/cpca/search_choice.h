@@ -58,6 +58,8 @@ struct Bound {
   /// max_bytes, or more than which is of no use: twice the signal, as what a few points need may
   /// exceed it once, or one cluster with all vectors, which for few points is more.
   std::size_t most_bytes(const Size& size) const;
+  /// Throws Error (failed) when not even one cluster without vectors is as small.
+  void check_room(const Size& size) const;
 };
 
 /// Error of an encoding by a norm; squares of points, of errors and energies alike, are multiplied

@@ -3,8 +3,8 @@
 // One encoding, the unit, is what somebody pays who knows the choice that the search will keep, and
 // encodes just that, from seeds, to the bound: under the maximum norm tightening is part of it. Its
 // products of points with means, vectors and one another are counted (Encoded::flops), seconds only
-// reported, so that searches decide alike on every machine. What was not made is told from what
-// was: in proportion to encoding_work().
+// reported, so that neither load nor threads change what a search decides (instruction sets may).
+// What was not made is told from what was: in proportion to encoding_work().
 #pragma once
 
 #include "cpca/method.h"

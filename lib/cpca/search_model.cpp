@@ -1,12 +1,8 @@
 #include "cpca/search_model.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
-
-#include "core/error.h"
 
 namespace prt::cpca {
 
@@ -115,6 +111,7 @@ void ErrorModel::correct_alone(const Choice& choice, double error) {
 }
 
 Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int most_clusters) {
+  aim.check_room(size);
   const int most_components =
       std::min(aim.cost.whole(size).component_count, model.most_components() + 2);
   struct Rated {
@@ -139,11 +136,6 @@ Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int m
       const Rated rated = rate_error({*fewest, i});
       take(best, {rated.choice, rated.next, rated.worth});
     }
-  }
-  if (!closest) {  // one cluster is always within most_bytes() without max_bytes
-    throw_failed("no encoding is as small",
-                 {.found = fmt::format("at least {} bytes", aim.cost.bytes(size, {1, 0})),
-                  .expected = fmt::format("at most {}", aim.most_bytes(size))});
   }
   return best ? best->choice : closest->choice;
 }

@@ -28,7 +28,6 @@ class ErrorModel {
   double error(const Choice& choice) const;
   /// Vectors of the longest column.
   int most_components() const;
-  int most_clusters() const { return columns_.back().cluster_count; }
 
   /// Shifts predictions so that those of the column come true, for as many vectors as it has, and
   /// the rest like its last.

@@ -60,11 +60,13 @@ Strategy::Strategy(const Bound& bound, double most_cost, const Size& size, Surve
 
 std::optional<Step> Strategy::next(double spent) {
   spent_ = spent;
+  if (has_missed_exact()) return std::nullopt;
   const std::optional<Choice> choice = choose_next();
   if (!choice) return last_resort();
+  if (bound_.max_error && is_exact(*choice)) return whole_step();
   return Step{.choice = *choice,
-              .first_clusters = first_of(*choice).cluster_count,
-              .most_clusters = most_clusters_worthwhile(*choice),
+              .first_cluster_count = first_of(*choice).cluster_count,
+              .most_cluster_count = most_clusters_worthwhile(*choice),
               .is_warm = is_warm_start(*choice)};
 }
 
@@ -92,7 +94,8 @@ bool Strategy::learn(const Trial& trial, double alone_flops, const std::optional
   } else {
     // Small clusters of adaptive encodings have more vectors than chosen.
     const double share = static_cast<double>(*bound_.max_bytes) / static_cast<double>(trial.bytes);
-    *aim_.max_bytes = static_cast<std::size_t>(0.98 * share * static_cast<double>(*aim_.max_bytes));
+    const double less = 0.98 * share * static_cast<double>(*aim_.max_bytes);
+    aim_.max_bytes = static_cast<std::size_t>(std::max(less, bytes({1, 0})));
   }
   return false;
 }
@@ -144,6 +147,8 @@ Choice Strategy::choose_first() const {
   if (!bound_.max_error) return least;
   const auto work = [&](const Choice& choice) { return flops_.work(choice, false); };
   const double most_bytes = bytes(least);
+  const Choice whole = bound_.cost.whole(size_);
+  if (is_exact(whole) && bytes(whole) <= (1.0 + kCertain) * most_bytes) return whole;
   Choice first = least;
   for (int i = 0; i <= static_cast<int>(size_.dimension); ++i) {
     const auto choice = choose_clusters(survey_.model, aim_, size_, most_clusters_, i);
@@ -222,7 +227,7 @@ std::optional<Choice> Strategy::choose_again() const {
   const auto count = std::count_if(trials_.begin(), trials_.end(), [&](const Trial& trial) {
     return trial.choice.component_count == best.component_count;
   });
-  const bool has_grown = best.cluster_count > best_trial().first_clusters;
+  const bool has_grown = best.cluster_count > best_trial().first_cluster_count;
   return has_grown && count == 1 && is_affordable(best, false) ? std::optional(best) : std::nullopt;
 }
 
@@ -262,14 +267,33 @@ int Strategy::most_clusters_worthwhile(Choice choice) const {
   return choice.cluster_count;
 }
 
+/// One cluster with a vector for every coefficient.
+bool Strategy::is_exact(const Choice& choice) const {
+  return choice == Choice{1, static_cast<int>(size_.dimension)};
+}
+
+bool Strategy::has_tried(const Choice& first) const {
+  return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& trial) {
+    return Choice{trial.first_cluster_count, trial.choice.component_count} == first;
+  });
+}
+
+/// Beyond the rounding of floats nothing is more exact.
+bool Strategy::has_missed_exact() const {
+  return !best_ && bound_.max_error && has_tried({1, static_cast<int>(size_.dimension)});
+}
+
+Step Strategy::whole_step() const {
+  return {.choice = bound_.cost.whole(size_),
+          .first_cluster_count = 1,
+          .most_cluster_count = 1,
+          .is_whole = true};
+}
+
 /// Before the error is said to be out of reach.
 std::optional<Step> Strategy::last_resort() const {
-  const Choice whole = bound_.cost.whole(size_);
-  const bool is_tried = std::any_of(trials_.begin(), trials_.end(), [&](const Trial& trial) {
-    return Choice{trial.first_clusters, trial.choice.component_count} == whole;
-  });
-  if (best_ || !bound_.max_error || is_tried) return std::nullopt;
-  return Step{.choice = whole, .first_clusters = 1, .most_clusters = 1, .is_whole = true};
+  if (best_ || !bound_.max_error || has_tried(bound_.cost.whole(size_))) return std::nullopt;
+  return whole_step();
 }
 
 }  // namespace prt::cpca

@@ -14,9 +14,9 @@ namespace prt::cpca {
 /// The next trial.
 struct Step {
   Choice choice;
-  int first_clusters = 0;  ///< before it is tightened
-  int most_clusters = 0;   ///< of tightening
-  bool is_warm = false;    ///< from the clusters of the last
+  int first_cluster_count = 0;  ///< before it is tightened
+  int most_cluster_count = 0;   ///< of tightening
+  bool is_warm = false;         ///< from the clusters of the last
   /// The last resort, one cluster with all vectors: of any method the same, and not tightened.
   bool is_whole = false;
 };
@@ -58,6 +58,10 @@ class Strategy {
   std::optional<Choice> accept(const std::optional<Choice>& choice, double share) const;
   std::optional<Choice> choose_beside() const;
   std::optional<Choice> choose_again() const;
+  bool is_exact(const Choice& choice) const;
+  bool has_tried(const Choice& first) const;
+  bool has_missed_exact() const;
+  Step whole_step() const;
   std::optional<Step> last_resort() const;
   Choice first_of(Choice choice) const;
   bool is_affordable(const Choice& choice, bool is_warm) const;

@@ -11,12 +11,12 @@ namespace prt::cpca {
 /// An encoding that was made on the way.
 struct Trial {
   Choice choice;
-  int first_clusters = 0;   ///< before it was tightened
-  double error = 0.0;       ///< relative, by the norm of the bound
-  std::size_t bytes = 0;    ///< by the cost of the bound
-  bool is_warm = false;     ///< started from the one before
-  double seconds = 0.0;     ///< of whichever run made it
-  bool is_resumed = false;  ///< made by an interrupted run
+  int first_cluster_count = 0;  ///< before it was tightened
+  double error = 0.0;           ///< relative, by the norm of the bound
+  std::size_t bytes = 0;        ///< by the cost of the bound
+  bool is_warm = false;         ///< started from the one before
+  double seconds = 0.0;         ///< of whichever run made it
+  bool is_resumed = false;      ///< made by an interrupted run
 };
 
 void log_trial(const Trial& trial);

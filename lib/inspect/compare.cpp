@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "image/false_color.h"
 #include "inspect/canvas.h"
@@ -29,7 +30,8 @@ void check_size(const char* name, const image::Image& image, const image::Image&
 }
 
 bool is_radiance(const std::filesystem::path& path) {
-  return path.extension() == ".exr" || path.extension() == ".hdr";
+  const std::string extension = lower_extension(path);
+  return extension == ".exr" || extension == ".hdr";
 }
 
 bool counts(const ComparisonInput& input, int x, int y) {

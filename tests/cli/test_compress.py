@@ -125,8 +125,8 @@ class Signal(SignalTest):
                      "prt-compress", "--signal", path, "--clusters", 4)
         self.refused(BAD_INPUT, "not a .npy file", "prt-compress", "--signal",
                      self.write("y.npy", b"hello, world"))
-        self.refused(WRONG_USAGE, "more clusters than points", "prt-compress", "--signal",
-                     self.write("one.npy", npy([[1.0, 2.0]])))
+        self.refused(WRONG_USAGE, "more clusters than points", "prt-compress", "--clusters", 256,
+                     "--signal", self.write("one.npy", npy([[1.0, 2.0]])))
 
     def test_signal_larger_than_memory_is_refused(self):
         path = self.write("big.npy", npy_header(90000000, 600))

@@ -1,4 +1,5 @@
-"""What prt-compress takes beside the program: at most 1.5 times the signal."""
+"""What prt-compress takes beside the program: encoding, and searching within an error, at most 1.5
+times the signal (docs/performance.md tells of searches that take more)."""
 
 import os
 import random

@@ -38,7 +38,7 @@ TEST(EncodeWithin, KeepsToTheErrorForAboutThreeEncodings) {
 double alone_flops(const Found& found, const Bound& bound, Method method,
                    std::span<const float> signal, int dimension) {
   const Trial& kept = found.trials[found.kept];
-  const Options options{.cluster_count = kept.first_clusters,
+  const Options options{.cluster_count = kept.first_cluster_count,
                         .component_count = kept.choice.component_count};
   Encoded encoded = encode(method, signal, dimension, options);
   if (bound.norm == Norm::rmse) return encoded.flops;
