@@ -20,7 +20,7 @@ namespace {
 constexpr int kBandCount = 5;
 constexpr std::size_t kDirectionCount = 1024;
 constexpr std::size_t kMostPoints = 256, kLeastPoints = 1;  // of a primitive
-constexpr std::size_t kAllPoints = 4096;                     // about, of many primitives
+constexpr std::size_t kAllPoints = 4096;                    // about, of many primitives
 constexpr std::size_t kPointBlock = 16;
 
 struct Probe {
