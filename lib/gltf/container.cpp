@@ -216,10 +216,12 @@ Bytes merge_buffers(const State& state, Json& root) {
     merged.insert(merged.end(), buffer.begin(), buffer.end());
   }
   if (offsets.empty()) return merged;
-  for (Json& view : root["bufferViews"]) {
-    const std::size_t offset = offsets[view["buffer"].get<std::size_t>()];
-    view["byteOffset"] = offset + view.value("byteOffset", std::size_t{0});
-    view["buffer"] = 0;
+  if (root.contains("bufferViews")) {
+    for (Json& view : root["bufferViews"]) {
+      const std::size_t offset = offsets[view["buffer"].get<std::size_t>()];
+      view["byteOffset"] = offset + view.value("byteOffset", std::size_t{0});
+      view["buffer"] = 0;
+    }
   }
   Json first = root["buffers"][0];
   first["byteLength"] = merged.size();

@@ -125,6 +125,15 @@ TEST(GltfSurvival, EverythingUnknownSurvivesImport) {
   EXPECT_EQ(result.document.scene().vertex_count(), 3u);
 }
 
+TEST(GltfSurvival, BuffersWithoutViewsStaySo) {
+  ordered_json json = samples::triangle_json();
+  json["nodes"][0].erase("mesh");
+  for (const char* name : {"meshes", "accessors", "bufferViews"}) json.erase(name);
+  const auto glb = samples::parse(json).glb_bytes();
+  EXPECT_FALSE(json_of(glb).contains("bufferViews"));
+  EXPECT_NO_THROW(Document::parse(glb, "a.glb"));
+}
+
 // glTF wants min and max as stored, not as scaled.
 TEST(GltfSurvival, BoundsOfMovedNormalisedTargetsAreOfTheStoredNumbers) {
   ordered_json json = rich_json();
