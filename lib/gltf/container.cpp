@@ -162,17 +162,6 @@ void load_buffers(State& state, const Chunks& chunks, Fetcher& fetcher) {
   }
 }
 
-/// Whether an image may be of that type, which glTF or an extension that the file uses names.
-bool is_allowed(const Json& root, const std::string& type) {
-  const Json* used = find(root, "extensionsUsed");
-  const auto uses = [&](const char* name) {
-    return used && std::find(used->begin(), used->end(), Json(name)) != used->end();
-  };
-  if (type == "image/webp") return uses("EXT_texture_webp");
-  if (type == "image/ktx2") return uses("KHR_texture_basisu");
-  return !type.empty();
-}
-
 void load_images(State& state, Fetcher& fetcher) {
   if (!state.root.contains("images")) return;
   for (std::size_t i = 0; i < state.root["images"].size(); ++i) {
@@ -180,24 +169,14 @@ void load_images(State& state, Fetcher& fetcher) {
     const Json& image = state.root["images"][i];
     if (!image.contains("uri")) continue;
     Bytes bytes = fetcher.fetch(optional_string(image, "uri", where), where);
-    const std::string type = image_mime_type(bytes);
-    if (!is_allowed(state.root, type)) {
-      throw_bad_input("not an image that glTF knows",
-                      {.file = state.file, .element = where.element, .expected = "PNG or JPEG"});
-    }
     Json& views = make_array(state.root, "bufferViews");
     make_array(state.root, "buffers").push_back({{"byteLength", bytes.size()}});
     views.push_back({{"buffer", state.buffers.size()}, {"byteLength", bytes.size()}});
     state.buffers.push_back(std::move(bytes));
     Json& target = state.root["images"][i];
     target.erase("uri");
-    target["mimeType"] = type;
     target["bufferView"] = views.size() - 1;
   }
-}
-
-bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
 void append_u32(Bytes& bytes, std::size_t value) {
@@ -230,16 +209,6 @@ Bytes merge_buffers(const State& state, Json& root) {
 }
 
 }  // namespace
-
-std::string image_mime_type(std::span<const std::byte> bytes) {
-  if (starts_with(bytes, "\x89PNG\r\n\x1a\n")) return "image/png";
-  if (starts_with(bytes, "\xff\xd8\xff")) return "image/jpeg";
-  if (starts_with(bytes, "\xabKTX 20\xbb")) return "image/ktx2";
-  if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP")) {
-    return "image/webp";
-  }
-  return {};
-}
 
 void load_container(State& state, std::span<const std::byte> bytes) {
   Chunks chunks{.json = bytes, .bin = {}};

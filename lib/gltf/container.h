@@ -15,10 +15,6 @@ void load_container(State& state, std::span<const std::byte> bytes);
 /// The bytes of a .glb file with one buffer. The same state gives the same bytes.
 Bytes make_glb(const State& state);
 
-/// "image/png", "image/jpeg" or another by the first bytes; empty: none that glTF or its
-/// extensions know.
-std::string image_mime_type(std::span<const std::byte> bytes);
-
 /// What a base64 data URI holds. Throws Error (bad_input).
 Bytes decode_data_uri(std::string_view uri, const Where& where);
 

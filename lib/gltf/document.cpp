@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "gltf/check.h"
 #include "gltf/container.h"
+#include "gltf/image_types.h"
 #include "gltf/state.h"
 #include "mesh/mesh_file.h"
 
@@ -31,6 +32,7 @@ Document Document::parse(std::span<const std::byte> bytes, const std::filesystem
   state->limits = limits;
   load_container(*state, bytes);
   check_document(*state);
+  name_image_types(*state);
   return Document(std::move(state));
 }
 
