@@ -1,5 +1,5 @@
 """What prt-compress takes beside the program: encoding, and searching within an error, at most 1.5
-times the signal (docs/performance.md tells of searches that take more)."""
+times the signal (docs/performance/scaling.md tells of searches that take more)."""
 
 import os
 import random
