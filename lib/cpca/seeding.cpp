@@ -14,7 +14,10 @@ namespace prt::cpca {
 namespace {
 
 constexpr std::size_t kSampleFloats = std::size_t{1} << 20, kMinPerMean = 16, kMaxPerMean = 64;
-constexpr std::size_t kSeedingBlock = 512;
+constexpr std::size_t kSeedingBlock = 512, kLine = 64 / sizeof(float);  ///< of a cache
+/// A mean whose squared distance to another is so many times a point's is further from the point,
+/// by the triangle inequality; with room for rounding.
+constexpr double kFar = 4.0001;
 
 /// One point out of each of equally long stretches of so many.
 std::vector<std::size_t> draw_points(std::size_t point_count, std::size_t sample_count,
@@ -47,36 +50,64 @@ std::size_t draw(std::span<const double> weights, std::span<const double> block_
   return chosen;
 }
 
-/// Lowers `distances` of points, `stride` floats apart, to those from `mean`. Returns their sum.
-[[gnu::always_inline]] inline double lower_distances(const float* points, std::size_t stride,
-                                                     const float* mean, double* distances,
-                                                     std::size_t count) {
+/// The sample: some of the points of a signal, which stay where they are, as those of many clusters
+/// are a good part of it.
+struct Candidates {
+  std::span<const float> signal;
+  std::size_t dimension;
+  std::vector<std::size_t> points;
+  std::vector<double> distances;       ///< squared, to the nearest mean
+  std::vector<std::uint32_t> nearest;  ///< mean
+
+  std::span<const float> row(std::size_t s) const {
+    return signal.subspan(points[s] * dimension, dimension);
+  }
+  /// As these rows are not one behind the other, the machine does not know which comes next.
+  void prefetch(std::size_t s) const {
+    for (std::size_t i = 0; i < dimension; i += kLine) __builtin_prefetch(row(s).data() + i);
+  }
+};
+
+/// A mean, and its squared distances to those before.
+struct NewMean {
+  std::span<const float> row;
+  std::uint32_t number;
+  std::span<const double> apart;
+};
+
+/// Lowers distances from `begin` to `end` to those from a mean. Returns their sum.
+[[gnu::always_inline]] inline double lower_distances(Candidates& sample, const NewMean& mean,
+                                                     std::size_t begin, std::size_t end) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double distance = squared_distance({points + i * stride, stride}, {mean, stride});
-    distances[i] = std::min(distances[i], distance);
-    sum += distances[i];
+  for (std::size_t s = begin; s < end; ++s) {
+    if (s + 1 < end) sample.prefetch(s + 1);
+    double& least = sample.distances[s];
+    if (mean.number == 0 || mean.apart[sample.nearest[s]] < kFar * least) {
+      const double distance = squared_distance(sample.row(s), mean.row);
+      if (distance < least) {
+        least = distance;
+        sample.nearest[s] = mean.number;
+      }
+    }
+    sum += least;
   }
   return sum;
 }
 
-[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] double lower_avx512(const float* points,
-                                                                          std::size_t stride,
-                                                                          const float* mean,
-                                                                          double* distances,
-                                                                          std::size_t count) {
-  return lower_distances(points, stride, mean, distances, count);
+[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma")]] double lower_avx512(Candidates& sample,
+                                                                          const NewMean& mean,
+                                                                          std::size_t begin,
+                                                                          std::size_t end) {
+  return lower_distances(sample, mean, begin, end);
 }
 
-[[gnu::target("avx2,fma")]] double lower_avx2(const float* points, std::size_t stride,
-                                              const float* mean, double* distances,
-                                              std::size_t count) {
-  return lower_distances(points, stride, mean, distances, count);
+[[gnu::target("avx2,fma")]] double lower_avx2(Candidates& sample, const NewMean& mean,
+                                              std::size_t begin, std::size_t end) {
+  return lower_distances(sample, mean, begin, end);
 }
 
-double lower_baseline(const float* points, std::size_t stride, const float* mean, double* distances,
-                      std::size_t count) {
-  return lower_distances(points, stride, mean, distances, count);
+double lower_baseline(Candidates& sample, const NewMean& mean, std::size_t begin, std::size_t end) {
+  return lower_distances(sample, mean, begin, end);
 }
 
 }  // namespace
@@ -90,37 +121,43 @@ std::vector<float> seed_means(std::span<const float> signal, std::size_t dimensi
   const std::size_t sample_count =
       std::min(point_count, std::clamp(kSampleFloats / dimension, kMinPerMean * cluster_count,
                                        kMaxPerMean * cluster_count));
-  const std::size_t stride = (dimension + kDistanceLanes - 1) / kDistanceLanes * kDistanceLanes;
-  const std::vector<std::size_t> points = draw_points(point_count, sample_count, random);
-  std::vector<float> sample(sample_count * stride);  // filled up with zeros
-  for (std::size_t s = 0; s < sample_count; ++s) {
-    std::copy_n(&signal[points[s] * dimension], dimension, &sample[s * stride]);
-  }
+  Candidates sample{
+      .signal = signal,
+      .dimension = dimension,
+      .points = draw_points(point_count, sample_count, random),
+      .distances = std::vector<double>(sample_count, std::numeric_limits<double>::infinity()),
+      .nearest = std::vector<std::uint32_t>(sample_count)};
   const auto lower = kernel_for(simd_level(), lower_avx512, lower_avx2, lower_baseline);
-  std::vector<double> distances(sample_count, std::numeric_limits<double>::infinity());
   std::vector<double> chances(point_weights.empty() ? 0 : sample_count);  // weighted distances
   std::vector<double> block_sums(block_count(sample_count, kSeedingBlock));
   std::size_t chosen = random.below(static_cast<std::uint32_t>(sample_count));
   const auto has_weight = [&](std::size_t s) {
-    return point_weights.empty() || point_weights[points[s]] > 0.0f;
+    return point_weights.empty() || point_weights[sample.points[s]] > 0.0f;
   };
   for (std::size_t tries = 0; !has_weight(chosen) && tries < sample_count; ++tries) {
     chosen = (chosen + 1) % sample_count;
   }
   std::vector<float> means;
-  for (std::size_t k = 0; k < cluster_count; ++k) {
-    const float* mean = &sample[chosen * stride];
-    means.insert(means.end(), mean, mean + dimension);
+  means.reserve(cluster_count * dimension);
+  std::vector<double> apart(cluster_count);
+  for (std::uint32_t k = 0; k < cluster_count; ++k) {
+    const NewMean mean{sample.row(chosen), k, apart};
+    parallel_for(k, kSeedingBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t other = begin; other < end; ++other) {
+        apart[other] = squared_distance({&means[other * dimension], dimension}, mean.row);
+      }
+    });
+    means.insert(means.end(), mean.row.begin(), mean.row.end());
     parallel_for(sample_count, kSeedingBlock, [&](std::size_t begin, std::size_t end) {
       double& sum = block_sums[begin / kSeedingBlock];
-      sum = lower(&sample[begin * stride], stride, mean, &distances[begin], end - begin);
+      sum = lower(sample, mean, begin, end);
       if (chances.empty()) return;
       sum = 0.0;
       for (std::size_t s = begin; s < end; ++s) {
-        sum += chances[s] = double{point_weights[points[s]]} * distances[s];
+        sum += chances[s] = double{point_weights[sample.points[s]]} * sample.distances[s];
       }
     });
-    chosen = draw(chances.empty() ? distances : chances, block_sums, random);
+    chosen = draw(chances.empty() ? sample.distances : chances, block_sums, random);
   }
   return means;
 }
