@@ -57,7 +57,7 @@ class Comparison {
   void search() {
     const auto dimension = static_cast<int>(size_.dimension);
     const cpca::Found found = cpca::encode_within(bound_, method_, signal_.values, dimension, {});
-    for (const cpca::Trial& trial : found.trials) print(trial);
+    for (const cpca::Trial& trial : found.trials) print(trial, found.alone_flops);
     const cpca::Trial& kept = found.trials[found.kept];
     best_ = kept.choice;
     worth_ = least_ = worth(kept);
@@ -89,10 +89,12 @@ class Comparison {
   }
 
  private:
-  static void print(const cpca::Trial& trial) {
-    fmt::print("  tried: {} clusters, {} components: error {:.5f}, {} bytes, {:.2f} s{}\n",
-               trial.choice.cluster_count, trial.choice.component_count, trial.error, trial.bytes,
-               trial.seconds, trial.is_warm ? ", warm" : "");
+  static void print(const cpca::Trial& trial, double alone_flops) {
+    fmt::print(
+        "  tried: {} clusters, {} components: error {:.5g}, {} bytes, {:.2f} s, {:.2f} "
+        "encodings{}\n",
+        trial.choice.cluster_count, trial.choice.component_count, trial.error, trial.bytes,
+        trial.seconds, trial.flops / alone_flops, trial.is_warm ? ", warm" : "");
   }
 
   /// Less is better.

@@ -53,19 +53,12 @@ double weight_share(cpca::StorageCost cost, const cpca::Encoding& encoding) {
   return 1.0 - static_cast<double>(cost.bytes(encoding)) / bytes;
 }
 
-/// One cluster with all vectors is exact, or as many as there can be; the signal itself is, too.
-std::size_t most_useful_bytes(const cpca::StorageCost& cost, const cpca::Size& size) {
-  return std::max(size.point_count * size.dimension * sizeof(float),
-                  cost.bytes(size, cost.whole(size)));
-}
-
 class FormatSearch {
  public:
   FormatSearch(const Job& job, const Input& input, const cpca::Options& options, Report& report)
       : job_(job),
         input_(input),
         json_(report.json()),
-        size_{input.transfer.values.size() / input.dimension, input.dimension},
         search_(method_of(job), input.transfer.values, static_cast<int>(input.dimension), options) {
     json_["search_cost"] = 0.0;
     json_["search"] = {{"sampled_points", 0},
@@ -138,9 +131,6 @@ class FormatSearch {
     if (bound.max_error) {
       *bound.max_error *= std::sqrt((1.0 - reserve) / (1.0 + reclassification_share(job_)));
     }
-    if (bound.max_bytes) {
-      bound.max_bytes = std::min(*bound.max_bytes, most_useful_bytes(bound.cost, size_));
-    }
     return bound;
   }
 
@@ -191,7 +181,7 @@ class FormatSearch {
   cpca::Found find(const cpca::Bound& bound, WeightFormat format) {
     const bool is_first = is_lucky() && format == WeightFormat::unorm8 && !job_.storage.weights;
     const double left = is_first ? 1.0 : 0.0;  // an encoding for the other format
-    cpca::Found found = search_.find(bound, cpca::kMostSearchCost - left);
+    cpca::Found found = search_.find(bound, cpca::kBudget - left);
     for (const cpca::Trial& trial : found.trials) {
       nlohmann::ordered_json row = {{"first_cluster_count", trial.first_cluster_count},
                                     {"cluster_count", trial.choice.cluster_count},
@@ -219,7 +209,6 @@ class FormatSearch {
   const Job& job_;
   const Input& input_;
   nlohmann::ordered_json& json_;
-  const cpca::Size size_;
   cpca::Search search_;
   std::optional<Candidate> best_;
   /// Of those that weights as they are stored took beyond max_error.
@@ -229,12 +218,13 @@ class FormatSearch {
 /// Once, for weights as small as they may be.
 void warn_of_useless_bytes(const Job& job, const Input& input) {
   const WeightFormat format = job.storage.weights.value_or(WeightFormat::float32);
-  const std::size_t most = most_useful_bytes(
-      cost_of(job, format), {input.transfer.values.size() / input.dimension, input.dimension});
-  if (job.bound.max_bytes.value_or(0) <= most) return;
+  const std::size_t enough =
+      cost_of(job, format)
+          .enough_bytes({input.transfer.values.size() / input.dimension, input.dimension});
+  if (job.bound.max_bytes.value_or(0) <= enough) return;
   log::warning(
       "--max-bytes is more than any use: {} bytes hold the signal as it is, no more are taken",
-      most);
+      enough);
 }
 
 }  // namespace

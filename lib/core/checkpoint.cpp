@@ -24,7 +24,7 @@ namespace prt {
 
 namespace {
 
-constexpr std::string_view kKind = "prtkit unfinished work, version ", kVersion = "3\n";
+constexpr std::string_view kKind = "prtkit unfinished work, version ", kVersion = "4\n";
 
 /// Before each result; the hash of both, kHashSize characters, comes after it.
 struct RecordHead {

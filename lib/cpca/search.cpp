@@ -32,14 +32,14 @@ class Search::State {
         seconds_model_(method, size_, options.iterations),
         flops_model_(method, size_, options.iterations) {}
 
-  Found find(const Bound& bound, double most_cost) {
+  Found find(const Bound& bound, double budget) {
     const Stopwatch stopwatch;
     bound_ = bound;
     best_.reset();  // of a bound that was out of reach
     last_.reset();
     bound.check_room(size_);
     if (!survey_) survey();
-    Strategy strategy(bound, most_cost, size_, *survey_, flops_model_);
+    Strategy strategy(bound, budget, size_, *survey_, flops_model_);
     while (const std::optional<Step> step = strategy.next(flops_)) {
       make(*step);
       log_trial(last_->trial);
@@ -69,7 +69,7 @@ class Search::State {
   }
 
   bool can_afford(const Found& found) const {
-    return flops_ + last_flops_ <= kMostSearchCost * found.alone_flops;
+    return flops_ + last_flops_ <= kBudget * found.alone_flops;
   }
 
  private:
@@ -142,6 +142,7 @@ class Search::State {
     fit_weights(signal_, encoding);  // to the last bit as they will be found again
     made->trial.error = relative_error(encoding, signal_, bound_.norm, options.point_weights);
     made->trial.bytes = bound_.cost.bytes(encoding);
+    made->trial.flops = made->encoded.flops;
     made->trial.choice.cluster_count = encoding.cluster_count;
     made->seconds.tightening = made->trial.seconds - made->seconds.encoding;
     made->flops.tightening = made->encoded.flops - made->flops.encoding;
@@ -219,7 +220,7 @@ Search::Search(Method method, std::span<const float> signal, int dimension,
 
 Search::~Search() = default;
 
-Found Search::find(const Bound& bound, double most_cost) { return state_->find(bound, most_cost); }
+Found Search::find(const Bound& bound, double budget) { return state_->find(bound, budget); }
 
 void Search::add_up(Found& found) const { state_->add_up(found); }
 

@@ -24,7 +24,7 @@ namespace prt::cpca {
 
 /// Encodings that a search which may stop is not expected to take more than: a little less than
 /// three, as the next one may take more than expected.
-constexpr double kMostSearchCost = 2.85;
+constexpr double kBudget = 2.85;
 
 struct Found {
   Encoded encoded;
@@ -51,13 +51,13 @@ class Search {
   /// The encoding of least bytes that keeps to max_error, or of least error that keeps to
   /// max_bytes, as far as the search finds it. Another call, with a bound that differs little,
   /// knows what the survey and the trials before told: seconds, flops and stages add up, and count
-  /// against its budget, `most_cost` encodings. Throws Error (failed) when it finds none.
-  Found find(const Bound& bound, double most_cost = kMostSearchCost);
+  /// against `budget`, in encodings. Throws Error (failed) when it finds none.
+  Found find(const Bound& bound, double budget = kBudget);
 
   /// Makes seconds, flops and stages of `found` those of all that was done since.
   void add_up(Found& found) const;
 
-  /// Whether another trial, like the last, still leaves it within kMostSearchCost encodings of
+  /// Whether another trial, like the last, still leaves it within kBudget encodings of
   /// `found`.
   bool can_afford(const Found& found) const;
 

@@ -63,10 +63,14 @@ Choice StorageCost::whole(const Size& size) const {
   return {1, std::min(static_cast<int>(size.dimension), max_component_count)};
 }
 
+std::size_t StorageCost::enough_bytes(const Size& size) const {
+  return std::max(bytes_of_headers + size.point_count * size.dimension * sizeof(float),
+                  bytes(size, whole(size)));
+}
+
 std::size_t Bound::most_bytes(const Size& size) const {
-  if (max_bytes) return *max_bytes;
-  return std::max(2 * size.point_count * size.dimension * sizeof(float) + cost.bytes_of_headers,
-                  cost.bytes(size, cost.whole(size)));
+  const std::size_t enough = cost.enough_bytes(size);
+  return max_bytes ? std::min(*max_bytes, enough) : 2 * enough;
 }
 
 void Bound::check_room(const Size& size) const {

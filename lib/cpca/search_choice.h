@@ -38,6 +38,9 @@ struct StorageCost {
 
   /// One cluster with all vectors, which is exact, or as many as there can be.
   Choice whole(const Size& size) const;
+
+  /// As many hold a signal exactly: as it is, or that cluster, which of few points is more.
+  std::size_t enough_bytes(const Size& size) const;
 };
 
 enum class Norm {
@@ -55,8 +58,8 @@ struct Bound {
   /// Largest errors of points are what encodings are tightened to.
   bool is_tight() const { return max_error && norm == Norm::maximum; }
 
-  /// max_bytes, or more than which is of no use: twice the signal, as what a few points need may
-  /// exceed it once, or one cluster with all vectors, which for few points is more.
+  /// max_bytes, as far as these are of use, or twice what holds the signal, as what a few points
+  /// need may exceed it once.
   std::size_t most_bytes(const Size& size) const;
   /// Throws Error (failed) when not even one cluster without vectors is as small.
   void check_room(const Size& size) const;

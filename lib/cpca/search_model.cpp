@@ -11,6 +11,9 @@ namespace {
 /// Exponents that occur, and that of one column alone. Errors below the least count as that.
 constexpr double kSteepest = -2.0, kFlattest = -0.02, kUsual = -0.5, kLeastLogged = 1e-12;
 
+/// Of logarithms of errors: more than that is luck.
+constexpr double kMostShift = 1.5;
+
 double log_of(double error) { return std::log(std::max(error, kLeastLogged)); }
 
 /// The fewest clusters of an error, if any do.
@@ -43,11 +46,16 @@ int most_clusters_within(const Bound& aim, const Size& size, int component_count
 
 void ErrorModel::add(const Column& column) {
   const auto place = std::find_if(columns_.begin(), columns_.end(), [&](const Column& other) {
-    return other.cluster_count > column.cluster_count;
+    return other.cluster_count >= column.cluster_count;
   });
   Column logs = column;
   for (double& error : logs.errors) error = log_of(error);
-  columns_.insert(place, std::move(logs));
+  const bool is_known = place != columns_.end() && place->cluster_count == column.cluster_count;
+  if (is_known) {
+    *place = std::move(logs);
+  } else {
+    columns_.insert(place, std::move(logs));
+  }
 }
 
 int ErrorModel::most_components() const {
@@ -74,6 +82,8 @@ double ErrorModel::column_value(std::size_t column, std::size_t components) cons
 
 double ErrorModel::log_error(const Choice& choice) const {
   const auto components = static_cast<std::size_t>(choice.component_count);
+  // Other clusters tell nothing of one.
+  if (is_one(choice)) return column_value(0, components) + one_shift_;
   const double x = std::log(choice.cluster_count);
   const double shift = shifts_.empty() ? 0.0 : shifts_[std::min(components, shifts_.size() - 1)];
   const auto at = [&](std::size_t c) { return std::log(columns_[c].cluster_count); };
@@ -82,28 +92,42 @@ double ErrorModel::log_error(const Choice& choice) const {
   while (c + 2 < columns_.size() && x > at(c + 1)) ++c;
   const double low = column_value(c, components), high = column_value(c + 1, components);
   const double slope = std::clamp((high - low) / (at(c + 1) - at(c)), kSteepest, kFlattest);
-  return low + slope * (x - at(c)) + shift;
+  // What steeper falls do between their ends is not known.
+  return (x < at(c + 1) ? low + slope * (x - at(c)) : high + slope * (x - at(c + 1))) + shift;
 }
 
 double ErrorModel::error(const Choice& choice) const { return std::exp(log_error(choice)); }
 
+bool ErrorModel::is_one(const Choice& choice) const {
+  return choice.cluster_count == 1 && columns_[0].cluster_count == 1;
+}
+
 void ErrorModel::correct(const Column& measured) {
+  const Choice last{measured.cluster_count, static_cast<int>(measured.errors.size()) - 1};
+  if (is_one(last)) return correct_alone(last, measured.errors.back());
   shifts_.clear();
   std::vector<double> shifts;
   for (std::size_t i = 0; i < measured.errors.size(); ++i) {
     shifts.push_back(log_of(measured.errors[i]) -
                      log_error({measured.cluster_count, static_cast<int>(i)}));
   }
+  shifts.push_back(std::abs(shifts.back()) > kMostShift ? 0.0 : shifts.back());  // of the rest
   shifts_ = std::move(shifts);
 }
 
 void ErrorModel::correct(const Choice& choice, double error) {
   if (shifts_.empty()) shifts_.assign(1, 0.0);
   const double shift = log_of(error) - log_error(choice);
+  // That all was exact there, by luck, tells nothing of others.
+  if (is_one(choice) || std::abs(shift) > kMostShift) return correct_alone(choice, error);
   for (double& known : shifts_) known += shift;
 }
 
 void ErrorModel::correct_alone(const Choice& choice, double error) {
+  if (is_one(choice)) {
+    one_shift_ += log_of(error) - log_error(choice);
+    return;
+  }
   const auto count = static_cast<std::size_t>(choice.component_count) + 1;
   if (shifts_.empty()) shifts_.assign(1, 0.0);
   while (shifts_.size() <= count) shifts_.push_back(shifts_.back());
@@ -131,8 +155,7 @@ Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int m
     const int most = most_clusters_within(aim, size, i, most_clusters);
     if (most == 0) break;
     take(closest, rate_error({most, i}));
-    if (aim.max_bytes) continue;
-    if (const auto fewest = fewest_clusters(model, i, *aim.max_error, most)) {
+    if (const auto fewest = fewest_clusters(model, i, aim.max_error.value_or(kExact), most)) {
       const Rated rated = rate_error({*fewest, i});
       take(best, {rated.choice, rated.next, rated.worth});
     }

@@ -14,6 +14,9 @@
 
 namespace prt::cpca {
 
+/// Relative errors no greater are what rounding leaves: less is of no use.
+constexpr double kExact = 1e-6;
+
 /// Relative errors for one number of clusters, with no vectors, one, and so on.
 struct Column {
   int cluster_count = 0;
@@ -22,7 +25,7 @@ struct Column {
 
 class ErrorModel {
  public:
-  /// Of another number of clusters than those before.
+  /// In place of one with as many clusters.
   void add(const Column& column);
 
   double error(const Choice& choice) const;
@@ -37,17 +40,20 @@ class ErrorModel {
   void correct_alone(const Choice& choice, double error);
 
  private:
+  /// One cluster, of which a column tells.
+  bool is_one(const Choice& choice) const;
   double column_value(std::size_t column, std::size_t components) const;
   double log_error(const Choice& choice) const;
 
   std::vector<Column> columns_;  // by cluster_count, errors as logarithms
   std::vector<double> shifts_;   // of their logarithms, by number of vectors
+  double one_shift_ = 0.0;       // of one cluster
 };
 
 /// The least bytes of predicted error <= aim.max_error, the least predicted error within
-/// aim.max_bytes; of equal ones that of the lesser error or bytes. When none keeps to max_error,
-/// the one of least error. At most `most_clusters`. Throws Error (failed) when nothing is as small
-/// as max_bytes.
+/// aim.max_bytes, or of exact ones the least bytes; of equal ones that of the lesser error or
+/// bytes. When none keeps to max_error, the one of least error. At most `most_clusters`. Throws
+/// Error (failed) when nothing is as small as max_bytes.
 Choice choose(const ErrorModel& model, const Bound& aim, const Size& size, int most_clusters);
 
 /// The fewest clusters with so many vectors of predicted error <= aim.max_error; nothing if there

@@ -12,15 +12,16 @@ namespace {
 constexpr std::size_t kMostTrials = 12;
 /// What another trial must promise: the share of bytes or error that it saves.
 constexpr double kWorthwhile = 0.015;
-/// Room below max_error at first; after every miss twice as much, and a share of what the
-/// prediction was off, up to the most.
-constexpr double kMargin = 0.002, kOffShare = 0.25, kMostMargin = 0.5;
+/// Room below max_error at first; after every miss twice as much, a share of what the prediction
+/// was off, or kMissDoubt over the root of the sample more, up to the most.
+constexpr double kMargin = 0.002, kOffShare = 0.25, kMissDoubt = 0.4, kMostMargin = 0.5;
 /// Where nothing is promising, a choice of so much less bytes is tried that would do if the
 /// prediction were off by kDoubt over the root of the sample, for each doubling of clusters, and
 /// for the least.
 constexpr double kProbe = 0.03, kDoubt = 1.0, kLeastDoublings = 0.25;
-/// One cluster with that share more bytes than what is predicted to do is certain, and cheap.
-constexpr double kCertain = 0.05;
+/// One cluster with that share more bytes than what is predicted to do, and kUncertain over the
+/// root of the sample, is certain, and cheap.
+constexpr double kCertain = 0.05, kUncertain = 2.0;
 /// Clusters of an encoding with that many vectors more or fewer are still a good start.
 constexpr int kNearComponents = 2;
 /// Under the maximum norm the survey is asked for a root mean square error so many times smaller:
@@ -30,8 +31,9 @@ constexpr double kPeak = 1.8;
 /// has shown how many these are. What it ends with is off by that much: others may be better, and
 /// the same from more clusters at first.
 constexpr double kFirstShare = 0.65, kLuck = 0.04, kAgainShare = 0.78;
-/// Tightening may take that much longer than the last time.
-constexpr double kTightDoubt = 1.35;
+/// Tightening may take that much longer than the last time. What encodings that began with others
+/// would take from seeds may be less than is told, as these settle sooner or later.
+constexpr double kTightDoubt = 1.35, kToldShare = 0.85;
 
 Bound aim_at(const Bound& bound, double margin) {
   Bound aim = bound;
@@ -46,10 +48,10 @@ Bound aim_at(const Bound& bound, double margin) {
 
 Bound first_aim(const Bound& bound) { return aim_at(bound, kMargin); }
 
-Strategy::Strategy(const Bound& bound, double most_cost, const Size& size, Survey& survey,
+Strategy::Strategy(const Bound& bound, double budget, const Size& size, Survey& survey,
                    const CostModel& flops)
     : bound_(bound),
-      most_cost_(most_cost),
+      budget_(budget),
       size_(size),
       most_clusters_(most_clusters(size.point_count)),
       is_tight_(bound.is_tight()),
@@ -124,7 +126,8 @@ bool Strategy::is_known(const Choice& choice) const {
 }
 
 void Strategy::aim_lower() {
-  margin_ = std::min(kMostMargin, std::max(2.0 * margin_, kOffShare * off_));
+  const double doubt = kMissDoubt / std::sqrt(static_cast<double>(survey_.sampled_count));
+  margin_ = std::min(kMostMargin, std::max({2.0 * margin_, kOffShare * off_, margin_ + doubt}));
   aim_ = aim_at(bound_, margin_);
 }
 
@@ -147,13 +150,15 @@ Choice Strategy::choose_first() const {
   if (!bound_.max_error) return least;
   const auto work = [&](const Choice& choice) { return flops_.work(choice, false); };
   const double most_bytes = bytes(least);
+  const double unsure = kUncertain / std::sqrt(static_cast<double>(survey_.sampled_count));
+  const double certain = kCertain + (is_tight_ ? 0.0 : unsure);
   const Choice whole = bound_.cost.whole(size_);
-  if (is_exact(whole) && bytes(whole) <= (1.0 + kCertain) * most_bytes) return whole;
+  if (is_exact(whole) && bytes(whole) <= (1.0 + certain) * most_bytes) return whole;
   Choice first = least;
   for (int i = 0; i <= static_cast<int>(size_.dimension); ++i) {
     const auto choice = choose_clusters(survey_.model, aim_, size_, most_clusters_, i);
     if (!choice) continue;
-    const double share = choice->cluster_count == 1 ? kCertain : kWorthwhile;
+    const double share = choice->cluster_count == 1 ? certain : kWorthwhile;
     if (bytes(*choice) > (1.0 + share) * most_bytes) continue;
     if (work(*choice) < work(first)) first = *choice;
   }
@@ -169,18 +174,21 @@ std::optional<Choice> Strategy::choose_better() const {
     return again ? again : accept(beside, 1.0 + kLuck);
   }
   const auto better = accept(choose_aim(), 1.0 - kWorthwhile);
-  if (better || !bound_.max_error) return better;
-  return choose_doubtful();
+  return better ? better : choose_doubtful();
 }
 
-/// With up to two vectors fewer or more, and as many clusters as save what is worthwhile, the one
-/// that is the likeliest to keep to the bound, if the prediction may be off by as much: the more,
-/// the more the clusters differ, and the smaller the sample.
+/// With up to two vectors fewer or more, and as many clusters as there is room for or as save what
+/// is worthwhile, the one that is the likeliest to keep to the bound or to be better, if the
+/// prediction may be off by as much: the more, the more the clusters differ, and the smaller the
+/// sample.
 std::optional<Choice> Strategy::choose_doubtful() const {
   const Choice& best = best_trial().choice;
   const double doubt = kDoubt / std::sqrt(static_cast<double>(survey_.sampled_count));
-  Bound smaller = bound_;
-  smaller.max_bytes = static_cast<std::size_t>((1.0 - kProbe) * worth(best_trial()) / bytes_share_);
+  const double less = (1.0 - kProbe) * worth(best_trial()),
+               max_error = aim_.max_error.value_or(less);
+  if (max_error <= kExact) return std::nullopt;
+  Bound smaller = aim_;
+  if (bound_.max_error) smaller.max_bytes = static_cast<std::size_t>(less / bytes_share_);
   std::optional<Choice> likeliest;
   double least = 0.0;
   for (int i = best.component_count - kNearComponents; i <= best.component_count + kNearComponents;
@@ -189,8 +197,8 @@ std::optional<Choice> Strategy::choose_doubtful() const {
     if (!choice || is_known(*choice)) continue;
     const double doublings =
         std::abs(std::log2(static_cast<double>(choice->cluster_count) / best.cluster_count));
-    const double off = std::log(survey_.model.error(*choice) / *aim_.max_error) -
-                       doubt * (kLeastDoublings + doublings);
+    const double off =
+        std::log(survey_.model.error(*choice) / max_error) - doubt * (kLeastDoublings + doublings);
     if (off >= least || !is_affordable(*choice, is_warm_start(*choice))) continue;
     least = off;
     likeliest = choice;
@@ -243,8 +251,14 @@ Choice Strategy::first_of(Choice choice) const {
 bool Strategy::is_affordable(const Choice& choice, bool is_warm) const {
   const Choice first = first_of(choice);
   const double doubt = is_tight_ ? kTightDoubt : 1.0;
-  return spent_ + doubt * flops_.next(first, is_warm) <=
-         most_cost_ * std::min(best_flops_, flops_.alone(first));
+  const bool is_told = is_warm || best_trial().is_warm;
+  double next = flops_.next(first, is_warm);
+  // Without vectors encodings settle at another time: what these took tells nothing of others.
+  if ((first.component_count == 0) != (trials_.back().choice.component_count == 0)) {
+    next = std::max(next, flops_.work(first, is_warm));
+  }
+  return spent_ + doubt * next <=
+         (is_told ? kToldShare : 1.0) * budget_ * std::min(best_flops_, flops_.alone(first));
 }
 
 /// Tightened clusters are no good start, but a cheap one.

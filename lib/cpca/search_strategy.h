@@ -28,8 +28,8 @@ Bound first_aim(const Bound& bound);
 class Strategy {
  public:
   /// `survey`, which trials correct, and `flops`, which the caller teaches, are referred to. The
-  /// search may take `most_cost` encodings.
-  Strategy(const Bound& bound, double most_cost, const Size& size, Survey& survey,
+  /// search may take `budget` encodings.
+  Strategy(const Bound& bound, double budget, const Size& size, Survey& survey,
            const CostModel& flops);
 
   /// Nothing when the search is done. `spent`: flops so far.
@@ -69,7 +69,7 @@ class Strategy {
   int most_clusters_worthwhile(Choice choice) const;
 
   const Bound bound_;
-  const double most_cost_;
+  const double budget_;  ///< of the search, in encodings
   const Size size_;
   const int most_clusters_;
   const bool is_tight_;

@@ -5,72 +5,30 @@
 #include <optional>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/random.h"
 #include "cpca/iterative_encoder.h"
 #include "cpca/kept.h"
 #include "cpca/search_cost.h"
+#include "cpca/search_sample.h"
 
 namespace prt::cpca {
 
 namespace {
 
 constexpr int kIterations = 4, kStep = 4, kMostColumns = 4;
-/// One point of so many is in the sample, but so many at least.
-constexpr std::size_t kSurveyShare = 4, kLeastSample = 128;
 /// Of one encoding: what the survey may take before another column.
-constexpr double kMostCost = 0.75;
-/// More coefficients than that are not taken apart for one cluster with all vectors: eigenvectors
-/// take the cube of them.
+constexpr double kSurveyBudget = 0.75;
+/// Vectors of one cluster, at most: of more coefficients it is not taken apart into all of them.
 constexpr int kMostWhole = 256;
+/// Signals of so few points for each coefficient are taken apart as a whole where that takes no
+/// more than a share of an encoding.
+constexpr std::size_t kPointsPerCoefficient = 8;
+constexpr double kShareOfOne = 0.1;
+/// By which static encodings of as many clusters and vectors may be worse than iterative ones.
+constexpr double kStaticExcess = 2.0;
 /// Points of a cluster of the sample, at least; and per vector and mean.
 constexpr std::size_t kPointsPerCluster = 6;
 constexpr double kPointsPerVector = 1.7;
-constexpr std::size_t kMostClusters = 65536, kSignalPointsPerCluster = 2, kCopyBlock = 512;
-
-struct Sample {
-  std::vector<float> rows, weights;  ///< empty: all points
-  std::span<const float> signal, point_weights;
-  std::size_t count = 0, all_count = 0;
-  double energy = 0.0;
-
-  double points_per_cluster(int cluster_count) const {
-    return static_cast<double>(count) / cluster_count;
-  }
-};
-
-/// One point out of each of equally long stretches of the signal.
-void draw(Sample& sample, std::span<const float> signal, std::size_t n, const Options& options) {
-  Pcg32 random(options.seed);
-  std::vector<std::size_t> points(sample.count);
-  for (std::size_t s = 0; s < sample.count; ++s) {
-    const std::size_t begin = s * sample.all_count / sample.count;
-    const std::size_t length = (s + 1) * sample.all_count / sample.count - begin;
-    points[s] = begin + random.below(static_cast<std::uint32_t>(length));
-  }
-  sample.rows.resize(sample.count * n);
-  parallel_for(sample.count, kCopyBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      std::copy_n(&signal[points[s] * n], n, &sample.rows[s * n]);
-    }
-  });
-  sample.signal = sample.rows;
-  if (options.point_weights.empty()) return;
-  for (const std::size_t point : points) sample.weights.push_back(options.point_weights[point]);
-  sample.point_weights = sample.weights;
-}
-
-Sample make_sample(std::span<const float> signal, std::size_t n, const Options& options) {
-  Sample sample;
-  sample.all_count = signal.size() / n;
-  sample.count =
-      std::min(sample.all_count, std::max(kLeastSample, sample.all_count / kSurveyShare));
-  sample.signal = signal;
-  sample.point_weights = options.point_weights;
-  if (sample.count < sample.all_count) draw(sample, signal, n, options);
-  sample.energy = weighted_energy(sample.signal, sample.count, sample.point_weights);
-  return sample;
-}
+constexpr std::size_t kMostClusters = 65536, kSignalPointsPerCluster = 2;
 
 /// Encodes the sample, and tells the errors of the whole signal.
 class Surveyor {
@@ -91,9 +49,86 @@ class Surveyor {
     most_bytes_ = bound.most_bytes(size_);
   }
 
+  /// One cluster of all points.
+  Column encode_one_of_all(int component_count, std::span<const float> signal,
+                           std::span<const float> weights) {
+    return keep(1, [&] {
+      Options options = options_;
+      options.cluster_count = 1;
+      options.component_count = component_count;
+      options.point_weights = weights;
+      const Encoded encoded = encode_static(signal, dimension_, options);
+      flops_ += encoded.flops;
+      return Column{1, relative_errors(encoded.encoding, signal, bound_.norm, weights)};
+    });
+  }
+
+  /// As many vectors as are within the bound, or bring anything.
+  Column encode_one() {
+    set_counts(1, std::min(most_components(1), kMostWhole));
+    return keep(1, [&] {
+      const int most = options_.component_count;
+      if (method_ != Method::fixed && most > 0) {
+        // Together they take no more than so few one by one, and are the same.
+        options_.component_count = std::min(most, few_vectors());
+        const Column column = encode_iteratively();
+        if (is_enough(column.errors.back())) return column;
+        options_.component_count = most;
+      }
+      return encode_fixed();
+    });
+  }
+
   Column encode(int cluster_count) {
-    options_.cluster_count = cluster_count;
-    options_.component_count = most_components(cluster_count);
+    set_counts(cluster_count, most_components(cluster_count));
+    const Column column = keep(cluster_count, [&] {
+      return method_ == Method::fixed ? encode_fixed() : encode_iteratively();
+    });
+    work_ += work({cluster_count, static_cast<int>(column.errors.size()) - 1});
+    return column;
+  }
+
+  /// Whether all points can be looked at for that choice: the fewer there are, the less a sample
+  /// tells of many vectors.
+  bool can_afford_all(const Choice& one) const {
+    const bool is_small = size_.point_count <= kPointsPerCoefficient * size_.dimension;
+    return is_small && sample_.count < size_.point_count &&
+           encoding_work(Method::fixed, size_, one, iterations_) <=
+               kShareOfOne * encoding_work(method_, size_, one, iterations_);
+  }
+
+  double flops() const { return flops_; }
+
+  bool is_enough(double error) const { return error <= bound_.max_error.value_or(kExact); }
+
+  /// Whether another column leaves the survey within its share of what is to be encoded.
+  bool can_afford(const ErrorModel& model, int cluster_count, const Choice& wanted) const {
+    Choice last{cluster_count, 0};
+    const int most = most_components(cluster_count);
+    while (last.component_count < most && !is_enough(model.error(last))) ++last.component_count;
+    return work_ + work(last) <= kSurveyBudget * encoding_work(method_, size_, wanted, iterations_);
+  }
+
+  /// Whether clusters may take less than one does: by a column of static encodings, which tells as
+  /// much as its errors may be too great by.
+  bool may_take_less(ErrorModel model, int cluster_count, const Choice& one) {
+    set_counts(cluster_count, most_components(cluster_count));
+    model.add(keep(cluster_count, [&] { return encode_fixed(); }));
+    Bound loose = bound_;
+    loose.max_error = kStaticExcess * bound_.max_error.value_or(kExact);
+    for (int i = 0; i <= one.component_count; ++i) {
+      auto choice = choose_clusters(model, loose, size_, most_clusters(size_.point_count), i);
+      if (!choice) continue;
+      choice->cluster_count = std::max(choice->cluster_count, 2);
+      if (bound_.cost.bytes(size_, *choice) < bound_.cost.bytes(size_, one)) return true;
+    }
+    return false;
+  }
+
+ private:
+  /// Makes a column, or takes the one of an interrupted run.
+  template <typename Make>
+  Column keep(int cluster_count, const Make& make) {
     Column column{cluster_count, {}};
     const Checkpoint::Name name{kSurveyStage, column_count_++};
     const auto members = [&](Archive& archive) {
@@ -101,35 +136,30 @@ class Surveyor {
       archive.value(flops_);
     };
     if (!restore_state(checkpoint_, name, members)) {
-      // Of one cluster the static method makes the same.
-      const bool is_fixed = method_ == Method::fixed || cluster_count == 1;
-      column = is_fixed ? encode_fixed() : encode_iteratively();
+      column = make();
       store_state(checkpoint_, name, members);
     }
-    const Choice last{cluster_count, static_cast<int>(column.errors.size()) - 1};
-    if (cluster_count > 1) work_ += work(last);
-    for (std::size_t i = 0; bound_.max_error && i < column.errors.size(); ++i) {
-      if (column.errors[i] > *bound_.max_error) continue;
+    for (std::size_t i = 0; i < column.errors.size(); ++i) {
+      if (!is_enough(column.errors[i])) continue;
       most_bytes_ =
           std::min(most_bytes_, bound_.cost.bytes(size_, {cluster_count, static_cast<int>(i)}));
     }
     return column;
   }
 
-  double flops() const { return flops_; }
-
-  /// Whether another column leaves the survey within its share of what is to be encoded.
-  bool can_afford(const ErrorModel& model, int cluster_count, const Choice& wanted) const {
-    Choice last{cluster_count, 0};
-    const int most = most_components(cluster_count);
-    while (last.component_count < most &&
-           (!bound_.max_error || model.error(last) > *bound_.max_error)) {
-      ++last.component_count;
-    }
-    return work_ + work(last) <= kMostCost * encoding_work(method_, size_, wanted, iterations_);
+  void set_counts(int cluster_count, int component_count) {
+    options_.cluster_count = cluster_count;
+    options_.component_count = component_count;
   }
 
- private:
+  /// Vectors of one cluster that take about as much one by one as all together.
+  int few_vectors() const {
+    const double all = encoding_work(Method::fixed, size_, {1, dimension_}, iterations_);
+    int count = 0;
+    while (encoding_work(Method::iterative, size_, {1, count + 1}, iterations_) < all) ++count;
+    return count;
+  }
+
   double work(const Choice& last) const {
     const Method method = method_ == Method::fixed ? method_ : Method::iterative;
     return encoding_work(method, {sample_.count, size_.dimension}, last, options_.iterations);
@@ -186,7 +216,7 @@ class Surveyor {
       const double squared_error = encoder.measure();
       column.errors.push_back(relative_error(encoder, squared_error) *
                               correction(static_cast<std::size_t>(i)));
-      if (bound_.max_error && column.errors.back() <= *bound_.max_error) break;
+      if (is_enough(column.errors.back())) break;
     }
     flops_ += encoder.clusterer().flops();
     return column;
@@ -205,6 +235,50 @@ class Surveyor {
   double flops_ = 0.0, work_ = 0.0;  ///< done; encoding_work of columns
 };
 
+/// One cluster with as few vectors as are enough.
+std::optional<Choice> one_within(const ErrorModel& model, Bound bound, const Size& size) {
+  bound.max_error = bound.max_error.value_or(kExact);
+  for (int i = 0; i <= model.most_components(); ++i) {
+    if (const auto one = choose_clusters(model, bound, size, 1, i)) return one;
+  }
+  return std::nullopt;
+}
+
+/// Of more clusters than one.
+void add_columns(const Bound& bound, const Size& size, Surveyor& surveyor, Survey& survey) {
+  const auto most = static_cast<int>(survey.sampled_count / kPointsPerCluster);
+  if (most < 2) return;
+  // An eighth of the clusters whose means and vectors take as many bytes as the weights of points:
+  // about the fewest that are chosen, as encodings of few clusters take the least time.
+  const std::size_t few =
+      size.point_count * bound.cost.bytes_per_weight / (8 * size.dimension * sizeof(float));
+  const int least = std::min(size.dimension <= kMostWhole ? 2 : 8, most);
+  int low = std::clamp(static_cast<int>(std::min<std::size_t>(few, kMostClusters)), least, most);
+  // Where one cluster takes little, others have to promise something before they are looked at.
+  const std::optional<Choice> one = one_within(survey.model, bound, size);
+  if (one && !surveyor.can_afford(survey.model, low, *one) &&
+      !surveyor.may_take_less(survey.model, low, *one)) {
+    return;
+  }
+  survey.model.add(surveyor.encode(low));
+  int high = low;
+  for (int column = 1; column < kMostColumns; ++column) {
+    const Choice wanted = choose(survey.model, bound, size, most_clusters(size.point_count));
+    const int count = wanted.cluster_count;
+    const bool is_more = count > high || (column == 1 && low == least);
+    int next = 0;
+    if (is_more && high < most && (column == 1 || count > high + high / 3)) {
+      next = high = std::min(most, high * kStep);
+    } else if (!is_more && low > least && (column == 1 || count < low - low / 4)) {
+      next = low = std::max(least, low / kStep);
+    }
+    // Of many coefficients one cluster tells little of others, nor do these alone.
+    const bool is_due = column == 1 && size.dimension > kMostWhole && count > 1;
+    if (next == 0 || !(is_due || surveyor.can_afford(survey.model, next, wanted))) break;
+    survey.model.add(surveyor.encode(next));
+  }
+}
+
 }  // namespace
 
 int most_clusters(std::size_t point_count) {
@@ -216,38 +290,21 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
                    const Options& options) {
   const auto n = static_cast<std::size_t>(dimension);
   const Sample sample = make_sample(signal, n, options);
+  const Size size{sample.all_count, n};
   Surveyor surveyor(bound, method, sample, dimension, options);
-  const int most = static_cast<int>(std::max<std::size_t>(1, sample.count / kPointsPerCluster));
-  // An eighth of the clusters whose means and vectors take as many bytes as the weights of points:
-  // about the fewest that are chosen, as encodings of few clusters take the least time.
-  const std::size_t few = sample.all_count * bound.cost.bytes_per_weight / (8 * n * sizeof(float));
   Survey survey;
   survey.sampled_count = sample.count;
-  int column_count = 0;
-  const auto add = [&](int count) {
-    survey.model.add(surveyor.encode(count));
-    ++column_count;
-  };
-  if (dimension <= kMostWhole || most == 1) add(1);
-  const int least = std::min(dimension <= kMostWhole ? 2 : 8, most);  // of other columns
-  int low = std::clamp(static_cast<int>(std::min<std::size_t>(few, kMostClusters)), least, most);
-  if (most > 1) add(low);
-  int high = low;
-  for (int column = 1; column < kMostColumns && most > 1; ++column) {
-    const Choice wanted =
-        choose(survey.model, bound, {sample.all_count, n}, most_clusters(sample.all_count));
-    const int count = wanted.cluster_count;
-    const bool is_more = count > high || (column == 1 && low == least);
-    int next = 0;
-    if (is_more && high < most && (column == 1 || count > high + high / 3)) {
-      next = high = std::min(most, high * kStep);
-    } else if (!is_more && low > least && (column == 1 || count < low - low / 4)) {
-      next = low = std::max(least, low / kStep);
-    }
-    // One column alone tells nothing of other numbers of clusters, nor what an encoding takes.
-    if (next == 0 || (column_count > 1 && !surveyor.can_afford(survey.model, next, wanted))) break;
-    add(next);
+  // Nothing is smaller.
+  const Column mean = surveyor.encode_one_of_all(0, signal, options.point_weights);
+  const bool is_enough = surveyor.is_enough(mean.errors[0]);
+  const bool has_vectors = bound.cost.whole(size).component_count > 0;
+  survey.model.add(is_enough || !has_vectors ? mean : surveyor.encode_one());
+  const std::optional<Choice> one = one_within(survey.model, bound, size);
+  if (one && surveyor.can_afford_all(*one)) {
+    const int most = std::min(2 * one->component_count, bound.cost.whole(size).component_count);
+    survey.model.add(surveyor.encode_one_of_all(most, signal, options.point_weights));
   }
+  if (!is_enough) add_columns(bound, size, surveyor, survey);
   survey.flops = surveyor.flops();
   return survey;
 }

@@ -22,9 +22,11 @@ struct Survey {
   double flops = 0.0;             ///< as Encoded::flops
 };
 
-/// Encodes with numbers of clusters about those that will be chosen, as far as the first of them
-/// tell. Static encodings tell the errors of all numbers of vectors at once, as every vector takes
-/// its share from the error of a point; iterative ones make them one after the other.
+/// Encodes one cluster, without vectors of all points, as nothing is smaller, and then, unless that
+/// is enough or takes less than others promise, with numbers of clusters about those that will be
+/// chosen, as far as the first of them tell. Static encodings tell the errors of all numbers of
+/// vectors at once, as every vector takes its share from the error of a point; iterative ones make
+/// them one after the other.
 Survey make_survey(const Bound& bound, Method method, std::span<const float> signal, int dimension,
                    const Options& options);
 

@@ -16,6 +16,7 @@ struct Trial {
   std::size_t bytes = 0;        ///< by the cost of the bound
   bool is_warm = false;         ///< started from the one before
   double seconds = 0.0;         ///< of whichever run made it
+  double flops = 0.0;           ///< as Encoded::flops
   bool is_resumed = false;      ///< made by an interrupted run
 };
 

@@ -123,6 +123,27 @@ TEST_P(SearchResume, ContinuesToTheSameEncoding) {
   EXPECT_EQ(resumed, std::ssize(expected.trials));
 }
 
+// Trials of both bounds are numbered through, and the survey is of the first.
+TEST_P(SearchResume, ContinuesSearchesOfTwoBounds) {
+  const auto [method, norm] = GetParam();
+  const auto signal = make_surface(1500, 30);
+  Options options{.iterations = 6};
+  const auto find_both = [&] {
+    Search search(method, signal, 30, options);
+    const Found coarse = search.find({.max_error = 0.05, .norm = norm, .max_bytes = {}});
+    return std::pair(coarse, search.find({.max_error = 0.03, .norm = norm, .max_bytes = {}}));
+  };
+  const auto expected = find_both();
+  interrupt([&](Checkpoint* checkpoint) {
+    options.checkpoint = checkpoint;
+    const auto found = find_both();
+    expect_same(found.first.encoded, expected.first.encoded);
+    expect_same(found.second.encoded, expected.second.encoded);
+    EXPECT_EQ(found.second.flops_cost(), expected.second.flops_cost());
+    EXPECT_EQ(found.second.trials.size(), expected.second.trials.size());
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, SearchResume,
                          testing::Values(std::pair(Method::fixed, Norm::rmse),
                                          std::pair(Method::iterative, Norm::rmse),

@@ -72,21 +72,28 @@ TEST(EncodeWithin, TakesAboutThreeEncodingsOfWhatItKeeps) {
       EXPECT_LE(found.encoded.flops, 3.2 * alone)
           << test.point_count << " x " << test.dimension << " within "
           << bound.max_error.value_or(0.0) << (bound.norm == Norm::rmse ? "" : " max");
-      EXPECT_NEAR(found.alone_flops, alone, 0.5 * alone);  // what it tells of itself
+      // What it tells of itself: of what began with other clusters only in proportion to the work,
+      // though from seeds these may settle earlier or later; one cluster with all vectors takes
+      // less by the static method, which makes it.
+      const Trial& kept = found.trials[found.kept];
+      if (kept.choice == bound.cost.whole({test.point_count, signal.size() / test.point_count})) {
+        EXPECT_LE(found.alone_flops, alone);
+      } else {
+        EXPECT_NEAR(found.alone_flops, alone, (kept.is_warm ? 0.35 : 1e-9) * alone);
+      }
     }
   }
 }
 
-// Small weights and many coefficients ask for few clusters, and one alone tells nothing of others:
-// with it alone a search went from 220 vectors down to 910,200 bytes, cluster by cluster.
-TEST(EncodeWithin, SurveysClustersOfManyCoefficientsToo) {
-  const auto signal = make_surface(1500, 300);
+// Small weights and many coefficients ask for one or two clusters with a vector for more than every
+// second coefficient, of which clusters of a sample, eight and more, tell nothing.
+TEST(EncodeWithin, TakesFewClustersOfManyCoefficientsWhereThatIsTheLeast) {
+  const auto signal = make_surface(800, 264);
   const Bound bound{
       .max_error = 0.05, .max_bytes = {}, .cost = {.bytes_per_weight = 1, .weight_group = 4}};
-  const Found found = encode_within(bound, Method::iterative, signal, 300, {});
-  const double alone = alone_flops(found, bound, Method::iterative, signal, 300);
-  EXPECT_LE(found.encoded.flops, 3.2 * alone);
-  EXPECT_LT(bound.cost.bytes(found.encoded.encoding), 860'000u);
+  const Found found = encode_within(bound, Method::iterative, signal, 264, {});
+  EXPECT_LE(found.encoded.encoding.cluster_count, 2);
+  EXPECT_LE(found.flops_cost(), 3.0);
 }
 
 TEST(EncodeWithin, AnotherBoundTakesNoOtherSurvey) {
@@ -240,6 +247,51 @@ TEST(EncodeWithin, FailsOnlyBeyondOneClusterWithAllVectors) {
   bound.cost.max_component_count = 20;
   EXPECT_THROW(encode_within(bound, Method::iterative, noise, kDimension, {.iterations = 2}),
                Error);
+}
+
+// More clusters than are exact would not be more exact.
+TEST(EncodeWithin, TakesTheLeastBytesThatAreExact) {
+  const auto direction = random_values(25, 1);
+  std::vector<float> constant, line;
+  for (std::size_t p = 0; p < 600; ++p) {
+    for (const float value : direction) {
+      constant.push_back(value);
+      line.push_back(0.3f + static_cast<float>(p) * value);
+    }
+  }
+  for (const Method method : {Method::fixed, Method::iterative, Method::adaptive}) {
+    for (const std::size_t max_bytes : {5000u, 50000u, 500000u}) {
+      const Bound bound{.max_error = {}, .max_bytes = max_bytes};
+      const Found one = encode_within(bound, method, constant, 25, {});
+      EXPECT_EQ(one.trials[one.kept].choice, (Choice{1, 0}));
+      EXPECT_LE(one.flops_cost(), 3.0);
+      const Found vector = encode_within(bound, method, line, 25, {});
+      EXPECT_EQ(vector.trials[vector.kept].choice, (Choice{1, 1}));
+      EXPECT_LE(vector.flops_cost(), 3.0);
+    }
+  }
+}
+
+// Clusters tell nothing of how few directions all points share.
+TEST(EncodeWithin, FindsTheRankOfSignalsOfManyCoefficients) {
+  constexpr std::size_t kCount = 700, kMany = 320, kRank = 4;
+  const auto weights = random_values(kCount * kRank, 31), axes = random_values(kRank * kMany, 32);
+  std::vector<float> signal(kCount * kMany);
+  for (std::size_t p = 0; p < kCount; ++p) {
+    for (std::size_t r = 0; r < kRank; ++r) {
+      for (std::size_t i = 0; i < kMany; ++i) {
+        signal[p * kMany + i] += weights[p * kRank + r] * axes[r * kMany + i];
+      }
+    }
+  }
+  for (const Method method : {Method::fixed, Method::iterative}) {
+    for (const Norm norm : {Norm::rmse, Norm::maximum}) {
+      const Bound bound{.max_error = 1e-3, .norm = norm, .max_bytes = {}};
+      const Found found = encode_within(bound, method, signal, kMany, {});
+      EXPECT_EQ(found.trials[found.kept].choice, (Choice{1, kRank}));
+      EXPECT_LE(found.flops_cost(), 3.0);
+    }
+  }
 }
 
 TEST(EncodeWithin, TakesDegenerateSignals) {
