@@ -7,6 +7,7 @@
 
 #include "cpca/iterative_encoder.h"
 #include "cpca/kept.h"
+#include "cpca/one_cluster.h"
 #include "cpca/search_cost.h"
 #include "cpca/search_sample.h"
 
@@ -52,15 +53,7 @@ class Surveyor {
   /// One cluster of all points.
   Column encode_one_of_all(int component_count, std::span<const float> signal,
                            std::span<const float> weights) {
-    return keep(1, [&] {
-      Options options = options_;
-      options.cluster_count = 1;
-      options.component_count = component_count;
-      options.point_weights = weights;
-      const Encoded encoded = encode_static(signal, dimension_, options);
-      flops_ += encoded.flops;
-      return Column{1, relative_errors(encoded.encoding, signal, bound_.norm, weights)};
-    });
+    return keep(1, [&] { return measure_one(component_count, signal, weights); });
   }
 
   /// As many vectors as are within the bound, or bring anything.
@@ -75,7 +68,9 @@ class Surveyor {
         if (is_enough(column.errors.back())) return column;
         options_.component_count = most;
       }
-      return encode_fixed();
+      Column column = measure_one(most, sample_.signal, sample_.point_weights);
+      for (std::size_t i = 0; i < column.errors.size(); ++i) column.errors[i] *= correction(i);
+      return column;
     });
   }
 
@@ -196,6 +191,14 @@ class Surveyor {
       largest = std::max(largest, weight * double{errors[p]});
     }
     return std::sqrt(largest * static_cast<double>(sample_.count) / sample_.energy);
+  }
+
+  Column measure_one(int component_count, std::span<const float> signal,
+                     std::span<const float> weights) {
+    OneCluster one =
+        measure_one_cluster(signal, size_.dimension, component_count, bound_.norm, weights);
+    flops_ += one.flops;
+    return {1, std::move(one.errors)};
   }
 
   Column encode_fixed() {
