@@ -23,9 +23,10 @@ std::vector<std::size_t> point_counts(const PointsByCluster& points) {
 }
 
 /// Alternations come in cycles that begin with some at a smaller budget: clusters that the
-/// iterative method fitted to the same number of vectors each hardly part from it otherwise.
+/// iterative method fitted to the same number of vectors each hardly part from it otherwise. These
+/// are loose (cpca/own_factor.h).
 constexpr int kCycle = 10, kTight = 4;
-constexpr double kTightShare = 0.6;
+constexpr double kTightShare = 0.8;
 /// For each iteration that is asked for.
 constexpr int kAlternations = 2;
 
@@ -66,7 +67,8 @@ class Adaptation {
       std::vector<std::uint32_t> labels = clusterer_.labels();
       // What a point that moves to a cluster of more vectors costs is taken from where it would
       // have saved allocation_.cost.
-      const auto pass = clusterer_.classify(i % 5 == 0, static_cast<float>(allocation_.cost));
+      const auto pass =
+          clusterer_.classify(i % 5 == 0, static_cast<float>(allocation_.cost), is_tight);
       errors_.push_back(pass.error_before + tail_);
       if (!is_tight && pass.error_before < least_) {
         least_ = pass.error_before;

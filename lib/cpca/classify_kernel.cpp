@@ -203,7 +203,8 @@ template <class T>
   all.refine(0, error, rounding);
   for (int half = 0; half < 2; ++half) {
     best.error[half] = error[half];
-    best.cost[half] = error[half] + work.penalties[0] * scales[half] - rounding[half];
+    best.cost[half] =
+        error[half] * work.own_factor + work.penalties[0] * scales[half] - rounding[half];
     best.candidate[half] = typename T::Ints{};
   }
   if (leading != nullptr) {

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "cpca/leading.h"
+#include "cpca/own_factor.h"
 #include "cpca/subspace_kernels.h"
 #include "cpca/subspace_update.h"
 
@@ -111,7 +112,7 @@ std::vector<Clusterer::Block> Clusterer::make_blocks() const {
   return blocks;
 }
 
-Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
+Clusterer::Pass Clusterer::classify(bool full, float vector_cost, bool loose) {
   const std::vector<Block> blocks = make_blocks();
   if (full) {
     block_neighbours_.assign(blocks.size() * neighbour_count_, 0);
@@ -120,7 +121,7 @@ Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
   if (subspaces_.dimension >= 2 * kLeading) leading_ = find_leading(subspaces_, kLeading);
   std::vector<Classified> classified(blocks.size());
   parallel_for(blocks.size(), 1, [&](std::size_t b, std::size_t) {
-    classified[b] = classify_block(blocks[b], full, vector_cost, b);
+    classified[b] = classify_block(blocks[b], full, vector_cost, loose, b);
   });
   leading_.reset();
   if (full) merge_neighbours(blocks);
@@ -139,7 +140,7 @@ Clusterer::Pass Clusterer::classify(bool full, float vector_cost) {
   return pass;
 }
 
-Classified Clusterer::classify_block(const Block& block, bool full, float vector_cost,
+Classified Clusterer::classify_block(const Block& block, bool full, float vector_cost, bool loose,
                                      std::size_t number) {
   const auto near =
       std::span(neighbours_).subspan(block.cluster * neighbour_count_, neighbour_count_);
@@ -150,14 +151,18 @@ Classified Clusterer::classify_block(const Block& block, bool full, float vector
   for (const std::uint32_t k : candidates) {
     penalties.push_back(vector_cost * static_cast<float>(subspaces_.used[k]));
   }
-  const Classified classified = cpca::classify(rows_, subspaces_,
-                                               {.points = block.points,
-                                                .candidates = candidates,
-                                                .penalties = penalties,
-                                                .labels = labels_,
-                                                .errors = errors_,
-                                                .affinities = affinities,
-                                                .leading = leading_ ? &*leading_ : nullptr});
+  const std::size_t vector_count = subspaces_.used[block.cluster],
+                    point_count = sorted_.of(block.cluster).size();
+  const Classified classified =
+      cpca::classify(rows_, subspaces_,
+                     {.points = block.points,
+                      .candidates = candidates,
+                      .penalties = penalties,
+                      .labels = labels_,
+                      .errors = errors_,
+                      .affinities = affinities,
+                      .own_factor = loose ? own_factor(vector_count, point_count) : 1.0f,
+                      .leading = leading_ ? &*leading_ : nullptr});
   if (!full) return classified;
   std::vector<std::uint32_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0u);

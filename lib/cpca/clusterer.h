@@ -32,8 +32,10 @@ class Clusterer {
   };
   /// Every point to the cluster of least error, all clusters tried or only near ones. Clusters that
   /// run empty take the points that add most to the error, as long as there is any left.
-  /// With a vector_cost, what is least is the error plus that for each vector of the cluster.
-  Pass classify(bool full, float vector_cost = 0.0f);
+  /// With a vector_cost, what is least is the error plus that for each vector of the cluster. When
+  /// `loose`, errors of points in the cluster that they are in count for more than they are
+  /// (cpca/own_factor.h), so that the error may rise.
+  Pass classify(bool full, float vector_cost = 0.0f, bool loose = false);
 
   /// Fits every cluster to its points, with as many vectors as `used` says, of the `held` >= used
   /// that it keeps.
@@ -68,7 +70,8 @@ class Clusterer {
     std::span<const std::uint32_t> points;
   };
   std::vector<Block> make_blocks() const;
-  Classified classify_block(const Block& block, bool full, float vector_cost, std::size_t number);
+  Classified classify_block(const Block& block, bool full, float vector_cost, bool loose,
+                            std::size_t number);
   void merge_neighbours(std::span<const Block> blocks);
   /// Returns how many there were.
   std::size_t fill_empty_clusters();

@@ -1,6 +1,7 @@
 #include "cpca/iterative_encoder.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/log.h"
 #include "cpca/fit.h"
@@ -145,14 +146,18 @@ void IterativeEncoder::move_to(const Rows& rows, std::size_t dimension, int coun
 void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
   const int count = level.component_count, last = iterations - 1;
   bool settled = false;  // nothing moved in the last pass
+  double before = levels_.size() > 1 ? levels_[levels_.size() - 2].errors.back()
+                                     : std::numeric_limits<double>::infinity();
   for (int i = 0; i <= last; ++i) {
     // The first pass of all knows no neighbours, not even those of its own result. Of few
     // coefficients and no vectors full passes cost little, and all levels begin with what they
     // find.
     const int full_count = count == 0 && !space_.has_axes() ? iterations : kFull;
     const bool full = settled || i < full_count || (is_final && i == last);
-    const Clusterer::Pass pass = clusterer_.classify(full);
-    level.errors.push_back(pass.error + space_.tail());
+    Clusterer::Pass pass = clusterer_.classify(full, 0.0f, i < iterations / 2);
+    if (pass.error + space_.tail() > before) pass = clusterer_.classify(full);
+    before = pass.error + space_.tail();
+    level.errors.push_back(before);
     level.is_whole = !space_.has_axes();
     if (count == 0) {
       update_for(count, level.errors.back());

@@ -24,6 +24,8 @@ struct Classification {
   /// Out unless empty: for each candidate the sum over points of (least error / error there)²: how
   /// likely points are to move there.
   std::span<float> affinities = {};
+  /// How many times the error in the cluster that points are in counts.
+  float own_factor = 1.0f;
   /// find_leading() of the subspaces, if any: whole panels pass by candidates that they show to be
   /// too far. Labels and errors are the same with and without; such a candidate's share of the
   /// affinities is estimated.

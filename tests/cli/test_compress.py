@@ -23,16 +23,16 @@ class Signal(SignalTest):
         self.assertLess(errors[2], errors[1])
 
     def test_clusters_of_different_size_are_told_by_fewest_most_and_average_vectors(self):
-        for method, pattern in (("static", "in 20 clusters of 4 components: "),
+        for method, pattern in (("static", "in 20 clusters of 3 components: "),
                                 ("adaptive",
                                  "in 20 clusters of {} to {} components, {:.1f} a point: ")):
             result = self.done("prt-compress", "--signal", self.signal, "--report", self.report,
-                               "--method", method, "--clusters", 20, "--components", 4)
+                               "--method", method, "--clusters", 20, "--components", 3)
             report = self.load(self.report)
             counts = [report[f"{least}component_count"] for least in ("least_", "", "mean_")]
             self.assertIn(pattern.format(*counts), result.stderr)
             self.assertEqual(method == "static", counts[0] == counts[1] == counts[2])
-            self.assertLessEqual(counts[2], 4 + 1e-9)
+            self.assertLessEqual(counts[2], 3 + 1e-9)
 
     def test_report_tells_the_error_after_each_iteration(self):
         report = self.compress("--clusters", 20, "--components", 2, "--iterations", 5)

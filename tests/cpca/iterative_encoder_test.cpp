@@ -102,27 +102,28 @@ TEST(IterativeEncoder, IsAsGoodAsThePlainMethod) {
 
 // More clusters than are tried between full passes. Which local minimum either finds is chance, so
 // that it takes the mean over signals and seeds to compare.
-TEST(IterativeEncoder, IsNoWorseThanThePlainMethodWithManyClusters) {
+TEST(IterativeEncoder, IsAsGoodAsThePlainMethodWithManyClusters) {
   const std::pair<std::size_t, std::vector<float>> signals[] = {
       {16, make_signal(1200, 16, 24)},
       {24, make_smooth_signal(35, 24, 20.0f)},
       {40, make_uneven_signal(1200, 40, 6)},
   };
-  double sum = 0.0;
+  double sum = 0.0, strict_sum = 0.0;
   int count = 0;
   for (const auto& [n, signal] : signals) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Options options{
           .cluster_count = 64, .component_count = 2, .iterations = 12, .seed = seed};
-      const double expected = PlainIterative(signal, n, 64, seed).run(2, 12);
-      const double ratio =
-          error_of(encode_iterative(signal, static_cast<int>(n), options), signal) / expected;
+      const double error = error_of(encode_iterative(signal, static_cast<int>(n), options), signal),
+                   ratio = error / PlainIterative(signal, n, 64, seed).run(2, 12, true);
       EXPECT_NEAR(ratio, 1.0, 0.03) << n << " coefficients, seed " << seed;
       sum += ratio;
+      strict_sum += error / PlainIterative(signal, n, 64, seed).run(2, 12);
       ++count;
     }
   }
   EXPECT_NEAR(sum / count, 1.0, 0.005);
+  EXPECT_LT(strict_sum / count, 0.95);  // which is what loose passes are for
 }
 
 TEST(IterativeEncoder, MeasuresLevelsInAllCoordinates) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "cpca/own_factor.h"
 #include "cpca/seeding.h"
 #include "linalg/decompose.h"
 
@@ -28,13 +29,13 @@ class PlainIterative {
     means_.assign(seeds.begin(), seeds.end());
   }
 
-  /// SE in the end.
-  double run(int component_count, int iterations) {
+  /// SE in the end. With `loose` the first half of the iterations is, as in cpca/own_factor.h.
+  double run(int component_count, int iterations, bool loose = false) {
     double error = 0.0;
     for (int count = 0; count <= component_count; ++count) {
       if (count > 0) fit(static_cast<std::size_t>(count));
       for (int i = 0; i < iterations; ++i) {
-        const bool moved = classify();
+        const bool moved = classify(loose && i < iterations / 2);
         fill_empty();
         fit(static_cast<std::size_t>(count));
         if (!moved) break;
@@ -57,14 +58,19 @@ class PlainIterative {
     return error;
   }
 
-  bool classify() {
+  bool classify(bool loose) {
     const std::vector<std::uint32_t> before = labels_;
+    std::vector<std::size_t> sizes(vectors_.size());
+    for (const std::uint32_t k : labels_) ++sizes[k];
     parallel_for(labels_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        errors_[p] = error_in(p, labels_[p]);
+        const std::uint32_t own = labels_[p];
+        errors_[p] = error_in(p, own);
+        double least = errors_[p];
+        if (loose) least *= own_factor(vectors_[own].size() / n_, sizes[own]);
         for (std::uint32_t k = 0; k < vectors_.size(); ++k) {
           const double error = error_in(p, k);
-          if (error < errors_[p]) errors_[p] = error, labels_[p] = k;
+          if (k != own && error < least) least = errors_[p] = error, labels_[p] = k;
         }
       }
     });

@@ -110,6 +110,30 @@ TEST(SubspaceKernels, PenaltiesDecideButAreNoError) {
   EXPECT_NEAR(errors[0], 0.0, 1e-5);
 }
 
+TEST(SubspaceKernels, ErrorsWherePointsAreMayCountMore) {
+  constexpr std::size_t n = 20;
+  const Subspaces subspaces = make_subspaces(n, 2, 3);
+  const std::vector<float> point = random_values(n, 8);
+  std::vector<std::uint32_t> points{0}, candidates{0, 1}, labels{9};
+  if (error_in(subspaces, 1, point.data()) < error_in(subspaces, 0, point.data())) {
+    std::swap(candidates[0], candidates[1]);  // it is in the better one
+  }
+  const double here = error_in(subspaces, candidates[0], point.data()),
+               there = error_in(subspaces, candidates[1], point.data());
+  std::vector<float> errors{9}, penalties{0.0f, 0.0f};
+  for (const bool leaves : {false, true}) {
+    classify({point.data(), 1, n}, subspaces,
+             {.points = points,
+              .candidates = candidates,
+              .penalties = penalties,
+              .labels = labels,
+              .errors = errors,
+              .own_factor = static_cast<float>(there / here * (leaves ? 1.01 : 0.99))});
+    EXPECT_EQ(labels[0], candidates[leaves ? 1 : 0]);
+    EXPECT_NEAR(errors[0], leaves ? there : here, 1e-4 * there);
+  }
+}
+
 TEST(SubspaceKernels, LeadingCoordinatesRuleOutButNeverDecide) {
   constexpr std::size_t n = 75, cluster_count = 40, point_count = 300;
   const Subspaces subspaces = make_subspaces(n, cluster_count, 9);
