@@ -135,8 +135,8 @@ TEST_F(CompressedModel, OfMatricesKeepsToTheBoundAsExitRadiance) {
 }
 
 TEST_F(CompressedModel, AutoIsNoWorseWithinABoundThanAnyFormat) {
-  // Of searches of about three encodings each: adaptive ones within 0.002 end 4% apart.
-  constexpr double kLuck = 1.05;
+  // Searches of about three encodings each end that far apart by chance, one adaptive one 7%.
+  constexpr double kLuck = 1.03, kAdaptiveLuck = 1.08;
   constexpr double kNone = 1e-4;  // errors below need not be less
   const auto result = [&](std::optional<cpca::WeightFormat> weights) {
     job_.storage.weights = weights;
@@ -153,11 +153,11 @@ TEST_F(CompressedModel, AutoIsNoWorseWithinABoundThanAnyFormat) {
     return job_.bound.max_error ? report.json()["bytes"].get<double>() : error;
   };
   const auto compare = [&] {
-    const double chosen = result({});
+    const double chosen = result({}), luck = job_.method == "adaptive" ? kAdaptiveLuck : kLuck;
     for (const auto format : {cpca::WeightFormat::float32, cpca::WeightFormat::float16,
                               cpca::WeightFormat::unorm16, cpca::WeightFormat::unorm8}) {
       try {
-        EXPECT_LE(chosen, std::max(kNone, kLuck * result(format))) << cpca::name_of(format);
+        EXPECT_LE(chosen, std::max(kNone, luck * result(format))) << cpca::name_of(format);
       } catch (const Error& error) {  // too coarse
         EXPECT_TRUE(job_.bound.max_error && format == cpca::WeightFormat::unorm8) << error.what();
       }
