@@ -133,7 +133,7 @@ Clusterer::Pass Clusterer::classify(bool full, float vector_cost, bool loose) {
       pass.moved_count += labels_[p] != blocks[b].cluster;
   }
   sorted_ = sort_by_cluster(labels_, subspaces_.cluster_count());
-  pass.moved_count += fill_empty_clusters();
+  if (!loose) pass.moved_count += fill_empty_clusters();
   for (std::size_t p = 0; p < labels_.size(); ++p) {
     pass.error += double{rows_.weight(p)} * double{errors_[p]};
   }

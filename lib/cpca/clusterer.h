@@ -34,7 +34,8 @@ class Clusterer {
   /// run empty take the points that add most to the error, as long as there is any left.
   /// With a vector_cost, what is least is the error plus that for each vector of the cluster. When
   /// `loose`, errors of points in the cluster that they are in count for more than they are
-  /// (cpca/own_factor.h), so that the error may rise.
+  /// (cpca/own_factor.h), so that the error may rise: a full pass that is not then finds all
+  /// clusters as they were, for empty ones stay empty.
   Pass classify(bool full, float vector_cost = 0.0f, bool loose = false);
 
   /// Fits every cluster to its points, with as many vectors as `used` says, of the `held` >= used

@@ -155,7 +155,7 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
     const int full_count = count == 0 && !space_.has_axes() ? iterations : kFull;
     const bool full = settled || i < full_count || (is_final && i == last);
     Clusterer::Pass pass = clusterer_.classify(full, 0.0f, i < iterations / 2);
-    if (pass.error + space_.tail() > before) pass = clusterer_.classify(full);
+    if (pass.error + space_.tail() > before) pass = clusterer_.classify(true);
     before = pass.error + space_.tail();
     level.errors.push_back(before);
     level.is_whole = !space_.has_axes();

@@ -63,6 +63,22 @@ TEST(IterativeEncoder, ErrorNeverRises) {
   }
 }
 
+// Where loose passes let it rise, and leave clusters empty.
+TEST(IterativeEncoder, ErrorNeverRisesInClustersOfFewPoints) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto signal = make_signal(360, 10, 12, seed);
+    const Encoded encoded = encode_iterative(
+        signal, 10, {.cluster_count = 70, .component_count = 3, .iterations = 16, .seed = seed});
+    double last = std::numeric_limits<double>::infinity();
+    for (const Level& level : encoded.levels) {
+      for (double error : level.errors) {
+        EXPECT_LE(error, last * (1.0 + kRounding)) << level.component_count << " vectors";
+        last = error;
+      }
+    }
+  }
+}
+
 // Without noise, so that errors end near 10⁻⁸ of the squares that they are differences of.
 TEST(IterativeEncoder, SmallErrorsNeverRiseAndAreTrue) {
   const Case cases[] = {
