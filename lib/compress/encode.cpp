@@ -19,7 +19,8 @@ cpca::Options make_options(const Job& job, const Input& input) {
   cpca::Options options;
   const auto point_count = static_cast<int>(input.transfer.values.size() / input.dimension);
   options.cluster_count = job.cluster_count.value_or(std::min(options.cluster_count, point_count));
-  options.component_count = job.component_count.value_or(options.component_count);
+  options.component_count = job.component_count.value_or(
+      std::min(options.component_count, static_cast<int>(input.dimension)));
   if (job.method == "vq") options.component_count = 0;
   if (job.method == "pca") options.cluster_count = 1;
   options.max_component_count = job.max_component_count;

@@ -25,7 +25,7 @@ std::vector<std::size_t> point_counts(const PointsByCluster& points) {
 /// Alternations come in cycles that begin with some at a smaller budget: clusters that the
 /// iterative method fitted to the same number of vectors each hardly part from it otherwise. These
 /// are loose (cpca/own_factor.h).
-constexpr int kCycle = 10, kTight = 4;
+constexpr int kCycle = 10, kTight = 5;
 constexpr double kTightShare = 0.8;
 /// For each iteration that is asked for.
 constexpr int kAlternations = 2;
@@ -61,7 +61,7 @@ class Adaptation {
       }
       // The first measures what the iterative method left, so that this is never worse.
       const bool is_first = i == 0;
-      const bool is_tight = !is_first && i % kCycle <= kTight && i + kCycle - kTight <= count;
+      const bool is_tight = !is_first && i % kCycle < kTight && i + kCycle - kTight < count;
       clusterer_.update(allocation_.counts, most_, is_first ? kFirstAdaptSteps : kAdaptSteps);
       if (!is_first) allocate_vectors(is_tight);
       std::vector<std::uint32_t> labels = clusterer_.labels();

@@ -154,7 +154,8 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
     // find.
     const int full_count = count == 0 && !space_.has_axes() ? iterations : kFull;
     const bool full = settled || i < full_count || (is_final && i == last);
-    Clusterer::Pass pass = clusterer_.classify(full, 0.0f, i < iterations / 2);
+    const bool loose = !settled && i < iterations / 2;
+    Clusterer::Pass pass = clusterer_.classify(full, 0.0f, loose);
     if (pass.error + space_.tail() > before) pass = clusterer_.classify(true);
     before = pass.error + space_.tail();
     level.errors.push_back(before);
@@ -166,7 +167,7 @@ void IterativeEncoder::iterate(Level& level, int iterations, bool is_final) {
     }
     progress_.advance(1);
     settled = pass.moved_count == 0;
-    if (settled && full) break;
+    if (settled && full && !loose) break;
   }
 }
 

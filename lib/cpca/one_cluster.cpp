@@ -1,7 +1,6 @@
 #include "cpca/one_cluster.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <numeric>
 
@@ -32,7 +31,7 @@ OneCluster measure_one_cluster(std::span<const float> signal, std::size_t dimens
                 .weights = {}};
   std::iota(points.begin(), points.end(), 0u);
   if (count > 0) find_components(signal, points, {part.means, part.bases}, point_weights);
-  std::vector<double> squares(count + 1);
+  std::vector<double> errors(count + 1);
   for (std::size_t begin = 0; begin < point_count; begin += kWeighed) {
     part.point_count = std::min(kWeighed, point_count - begin);
     part.cluster_of_point.assign(part.point_count, 0);
@@ -40,21 +39,14 @@ OneCluster measure_one_cluster(std::span<const float> signal, std::size_t dimens
     const auto weights =
         point_weights.empty() ? point_weights : point_weights.subspan(begin, part.point_count);
     fit_weights(rows, part);
-    const std::vector<double> errors = relative_errors(part, rows, norm, weights);
-    const double energy = weighted_energy(rows, part.point_count, weights);
+    const std::vector<double> more = combined_errors(part, rows, norm, weights);
     for (std::size_t i = 0; i <= count; ++i) {
-      const double square = errors[i] * errors[i] * energy;
-      squares[i] = norm == Norm::rmse
-                       ? squares[i] + square
-                       : std::max(squares[i], square / static_cast<double>(part.point_count));
+      errors[i] = norm == Norm::rmse ? errors[i] + more[i] : std::max(errors[i], more[i]);
     }
   }
   const double energy = weighted_energy(signal, point_count, point_weights);
-  const double share = norm == Norm::rmse ? 1.0 : static_cast<double>(point_count);
-  OneCluster result;
-  for (const double square : squares) {
-    result.errors.push_back(energy > 0.0 ? std::sqrt(share * square / energy) : 0.0);
-  }
+  for (double& error : errors) error = relative(error, norm, point_count, energy);
+  OneCluster result{.errors = std::move(errors)};
   const double numbers = static_cast<double>(signal.size());
   result.flops = 2.0 * numbers;
   if (count > 0) {

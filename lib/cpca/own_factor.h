@@ -3,7 +3,8 @@
 // point from outside, the more so the larger the share (1 + vectors) / m that one has in the fit.
 // Classification by error alone mistakes that for a good place and ends early. Like the
 // exchange algorithm of k-means (Hartigan 1975), which counts m / (m - 1) times the error of a
-// point in its own cluster, but further: how far is a matter of trial.
+// point in its own cluster, but further: how far is a matter of trial. It counts points, as if all
+// had the same weight.
 #pragma once
 
 #include <algorithm>

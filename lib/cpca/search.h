@@ -7,9 +7,9 @@
 // before. Which these are is up to cpca/search_strategy.h; encodings are made here.
 //
 // All this takes about three encodings at most, in the unit of cpca/search_cost.h: what the kept
-// choice would have taken alone, from seeds to the bound. The survey stops where another part of it
-// would take more than its share; once something is within the bound, what would lead beyond three
-// is not tried.
+// choice would have taken alone, from seeds to the bound. The survey stops where another number of
+// clusters would take more than its share; once something is within the bound, what would lead
+// beyond three is not tried.
 #pragma once
 
 #include <memory>

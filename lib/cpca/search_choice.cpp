@@ -28,13 +28,9 @@ std::size_t padded(std::size_t weight_count, std::size_t group) {
   return (weight_count + group - 1) / group * group;
 }
 
-double relative(std::span<const double> weighted_errors, Norm norm, double energy) {
-  if (energy <= 0.0) return 0.0;
-  const double square = norm == Norm::rmse
-                            ? std::accumulate(weighted_errors.begin(), weighted_errors.end(), 0.0)
-                            : *std::max_element(weighted_errors.begin(), weighted_errors.end()) *
-                                  static_cast<double>(weighted_errors.size());
-  return std::sqrt(square / energy);
+double combine(std::span<const double> weighted_errors, Norm norm) {
+  return norm == Norm::rmse ? std::accumulate(weighted_errors.begin(), weighted_errors.end(), 0.0)
+                            : *std::max_element(weighted_errors.begin(), weighted_errors.end());
 }
 
 }  // namespace
@@ -102,26 +98,39 @@ double weighted_energy(std::span<const float> signal, std::size_t point_count,
   return sum;
 }
 
+double relative(double error, Norm norm, std::size_t point_count, double energy) {
+  if (energy <= 0.0) return 0.0;
+  return std::sqrt(error * (norm == Norm::rmse ? 1.0 : static_cast<double>(point_count)) / energy);
+}
+
 double relative_error(const Encoding& encoding, std::span<const float> signal, Norm norm,
                       std::span<const float> point_weights) {
   const double energy = weighted_energy(signal, encoding.point_count, point_weights);
-  return relative(weighted_errors(encoding, signal, point_weights), norm, energy);
+  const std::vector<double> errors = weighted_errors(encoding, signal, point_weights);
+  return relative(combine(errors, norm), norm, errors.size(), energy);
 }
 
-std::vector<double> relative_errors(const Encoding& encoding, std::span<const float> signal,
+std::vector<double> combined_errors(const Encoding& encoding, std::span<const float> signal,
                                     Norm norm, std::span<const float> point_weights) {
-  const double energy = weighted_energy(signal, encoding.point_count, point_weights);
   const auto count = static_cast<std::size_t>(encoding.component_count);
   std::vector<double> errors = weighted_errors(encoding, signal, point_weights);
-  std::vector<double> relative_errors(count + 1);
+  std::vector<double> combined(count + 1);
   for (std::size_t i = count + 1; i-- > 0;) {
-    relative_errors[i] = relative(errors, norm, energy);
+    combined[i] = combine(errors, norm);
     for (std::size_t p = 0; i > 0 && p < errors.size(); ++p) {
       const double weight = encoding.weights[p * count + i - 1];
       errors[p] += weight * weight * (point_weights.empty() ? 1.0 : double{point_weights[p]});
     }
   }
-  return relative_errors;
+  return combined;
+}
+
+std::vector<double> relative_errors(const Encoding& encoding, std::span<const float> signal,
+                                    Norm norm, std::span<const float> point_weights) {
+  const double energy = weighted_energy(signal, encoding.point_count, point_weights);
+  std::vector<double> errors = combined_errors(encoding, signal, norm, point_weights);
+  for (double& error : errors) error = relative(error, norm, encoding.point_count, energy);
+  return errors;
 }
 
 }  // namespace prt::cpca

@@ -70,7 +70,14 @@ struct Bound {
 double relative_error(const Encoding& encoding, std::span<const float> signal, Norm norm,
                       std::span<const float> point_weights = {});
 
-/// The same if clusters had only their first 0, 1, … vectors, up to all; these are orthonormal.
+/// The same of an error by the norm: the sum over points, or the largest of one.
+double relative(double error, Norm norm, std::size_t point_count, double energy);
+
+/// Errors by the norm if clusters had only their first 0, 1, … vectors, up to all; these are
+/// orthonormal.
+std::vector<double> combined_errors(const Encoding& encoding, std::span<const float> signal,
+                                    Norm norm, std::span<const float> point_weights = {});
+/// Relative ones.
 std::vector<double> relative_errors(const Encoding& encoding, std::span<const float> signal,
                                     Norm norm, std::span<const float> point_weights = {});
 

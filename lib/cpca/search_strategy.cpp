@@ -147,7 +147,7 @@ std::optional<Choice> Strategy::choose_next() {
 /// cluster also where it is somewhat larger, as its error is known.
 Choice Strategy::choose_first() const {
   const Choice least = choose_aim();
-  if (!bound_.max_error) return least;
+  if (!bound_.max_error || least == Choice{1, 0}) return least;
   const auto work = [&](const Choice& choice) { return flops_.work(choice, false); };
   const double most_bytes = bytes(least);
   const double unsure = kUncertain / std::sqrt(static_cast<double>(survey_.sampled_count));

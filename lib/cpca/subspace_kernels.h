@@ -22,7 +22,7 @@ struct Classification {
   std::span<std::uint32_t> labels;
   std::span<float> errors;
   /// Out unless empty: for each candidate the sum over points of (least error / error there)²: how
-  /// likely points are to move there.
+  /// likely points are to move there; with own_factor the error of the one chosen is in its place.
   std::span<float> affinities = {};
   /// How many times the error in the cluster that points are in counts.
   float own_factor = 1.0f;

@@ -21,7 +21,10 @@ std::string type_of(std::span<const std::byte> bytes) {
   if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP")) {
     return "image/webp";
   }
-  if (bytes.size() >= 4 && starts_with(bytes.subspan(4), "ftypavif")) return "image/avif";
+  if (bytes.size() >= 4 &&
+      (starts_with(bytes.subspan(4), "ftypavif") || starts_with(bytes.subspan(4), "ftypavis"))) {
+    return "image/avif";
+  }
   return {};
 }
 

@@ -23,6 +23,7 @@ class Signal(SignalTest):
         self.assertLess(errors[2], errors[1])
 
     def test_clusters_of_different_size_are_told_by_fewest_most_and_average_vectors(self):
+        # With four each, adaptive clusters of this signal end with four each as well.
         for method, pattern in (("static", "in 20 clusters of 3 components: "),
                                 ("adaptive",
                                  "in 20 clusters of {} to {} components, {:.1f} a point: ")):

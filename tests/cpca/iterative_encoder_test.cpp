@@ -63,12 +63,16 @@ TEST(IterativeEncoder, ErrorNeverRises) {
   }
 }
 
-// Where loose passes let it rise, and leave clusters empty.
+// Where loose passes let it rise, of groups and of noise, and leave clusters empty.
 TEST(IterativeEncoder, ErrorNeverRisesInClustersOfFewPoints) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const auto signal = make_signal(360, 10, 12, seed);
-    const Encoded encoded = encode_iterative(
-        signal, 10, {.cluster_count = 70, .component_count = 3, .iterations = 16, .seed = seed});
+    const bool is_noise = seed % 2 == 0;
+    const auto signal = is_noise ? random_values(600 * 40, seed) : make_signal(360, 10, 12, seed);
+    const Options options{.cluster_count = is_noise ? 20 : 70,
+                          .component_count = is_noise ? 1 : 3,
+                          .iterations = 15,
+                          .seed = seed};
+    const Encoded encoded = encode_iterative(signal, is_noise ? 40 : 10, options);
     double last = std::numeric_limits<double>::infinity();
     for (const Level& level : encoded.levels) {
       for (double error : level.errors) {

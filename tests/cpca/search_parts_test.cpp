@@ -1,11 +1,14 @@
 // What the search is made of: the model of errors, the survey of a sample, starts from clusters.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
 
 #include "core/error.h"
+#include "cpca/encoder.h"
+#include "cpca/one_cluster.h"
 #include "cpca/search_resize.h"
 #include "cpca/search_survey.h"
 #include "cpca/signals.h"
@@ -28,6 +31,26 @@ ErrorModel make_model() {
     model.add(column);
   }
   return model;
+}
+
+// Points whose weights are made together are all zero; the mean is not.
+TEST(OneCluster, ErrorsAreThoseOfOneEncodingHoweverPointsAreOrdered) {
+  std::vector<float> signal = random_values(10000 * 4, 3);
+  std::fill_n(signal.begin(), 9000 * 4, 0.0f);
+  const auto weights = random_values(10000, 4);
+  std::vector<float> point_weights;
+  for (const float weight : weights) point_weights.push_back(weight + 1.0f);
+  const Encoded encoded = encode_static(
+      signal, 4, {.cluster_count = 1, .component_count = 3, .point_weights = point_weights});
+  for (const Norm norm : {Norm::rmse, Norm::maximum}) {
+    const auto expected = relative_errors(encoded.encoding, signal, norm, point_weights);
+    const OneCluster one = measure_one_cluster(signal, 4, 3, norm, point_weights);
+    ASSERT_EQ(one.errors.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(one.errors[i], expected[i], 1e-6) << i;
+    EXPECT_GT(one.errors[0], 0.5);
+    EXPECT_GT(one.flops, 0.0);
+    EXPECT_LE(one.flops, encoded.flops);
+  }
 }
 
 TEST(ErrorModel, FollowsPowerLawsBetweenAndBeyondItsColumns) {
