@@ -1,11 +1,7 @@
 #include "image/image.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string_view>
 
@@ -14,14 +10,13 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
+#include "image/openimageio.h"
 #include "image/prepare.h"
 #include "image/srgb.h"
 
 namespace prt::image {
 
 namespace {
-
-constexpr int kMaxChannels = 4;
 
 struct Format {
   const char* plugin;  ///< OpenImageIO's name
@@ -82,37 +77,36 @@ bool has_png_end(std::string_view text) {
   return false;
 }
 
-void check_size(const OIIO::ImageSpec& spec, const std::string& name, std::size_t max_pixels) {
-  if (spec.deep || spec.nchannels < 1 || spec.depth > 1) {
+void check_size(const FileLayout& layout, const std::string& name, std::size_t max_pixels) {
+  if (layout.is_deep || layout.channel_count < 1 || layout.depth > 1) {
     throw_bad_input("not a flat image", {.file = name});
   }
-  const auto width = static_cast<std::size_t>(std::max(spec.width, 0));
-  const auto height = static_cast<std::size_t>(std::max(spec.height, 0));
+  const auto width = static_cast<std::size_t>(std::max(layout.width, 0));
+  const auto height = static_cast<std::size_t>(std::max(layout.height, 0));
   if (width == 0 || height == 0 || checked_multiply(width, height) > max_pixels) {
     throw_bad_input("image size out of range",
                     {.file = name,
-                     .found = fmt::format("{} x {} pixels", spec.width, spec.height),
+                     .found = fmt::format("{} x {} pixels", layout.width, layout.height),
                      .expected = fmt::format("1 to {} pixels", max_pixels)});
   }
 }
 
 /// Greatest number of pixel bytes that a stored byte can stand for; none where that is not known.
-std::optional<std::size_t> largest_expansion(const Format& format, const OIIO::ImageSpec& spec) {
+std::optional<std::size_t> largest_expansion(const Format& format, const FileLayout& layout) {
   constexpr std::size_t kRunLength = 64, kDeflate = 1032;
   if (format.plugin == "png"sv) return kDeflate;
   if (format.plugin == "hdr"sv) return kRunLength;
-  const std::string compression = spec.get_string_attribute("compression");
-  if (compression == "none") return 1;
-  if (compression == "rle") return kRunLength;
-  if (compression == "zip" || compression == "zips") return kDeflate;
+  if (layout.compression == "none") return 1;
+  if (layout.compression == "rle") return kRunLength;
+  if (layout.compression == "zip" || layout.compression == "zips") return kDeflate;
   return std::nullopt;
 }
 
 /// In the file, before compression.
-std::size_t bits_per_pixel(const Format& format, const OIIO::ImageSpec& spec,
+std::size_t bits_per_pixel(const Format& format, const FileLayout& layout,
                            std::span<const std::byte> bytes) {
   if (format.plugin == "hdr"sv) return 4 * 8;
-  if (format.plugin != "png"sv) return 8 * spec.pixel_bytes(true);
+  if (format.plugin != "png"sv) return 8 * layout.pixel_bytes;
   const auto depth = static_cast<std::size_t>(bytes[24]),
              type = static_cast<std::size_t>(bytes[25]);
   const bool has_palette = type & 1, has_color = type & 2, has_alpha = type & 4;
@@ -120,16 +114,17 @@ std::size_t bits_per_pixel(const Format& format, const OIIO::ImageSpec& spec,
 }
 
 /// A small file must not make us take the memory of a huge image before its data turn out missing.
-void check_file_size(const Format& format, const OIIO::ImageSpec& spec, const std::string& name,
+void check_file_size(const Format& format, const FileLayout& layout, const std::string& name,
                      std::span<const std::byte> bytes) {
-  const std::optional<std::size_t> expansion = largest_expansion(format, spec);
+  const std::optional<std::size_t> expansion = largest_expansion(format, layout);
   const std::size_t pixels =
-      static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  const std::size_t pixel_bytes = checked_multiply(pixels, bits_per_pixel(format, spec, bytes)) / 8;
+      static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height);
+  const std::size_t pixel_bytes =
+      checked_multiply(pixels, bits_per_pixel(format, layout, bytes)) / 8;
   if (expansion && pixel_bytes / *expansion > bytes.size()) {
     throw_damaged(
         format, name,
-        fmt::format("{} bytes for {} x {} pixels", bytes.size(), spec.width, spec.height));
+        fmt::format("{} bytes for {} x {} pixels", bytes.size(), layout.width, layout.height));
   }
 }
 
@@ -154,20 +149,11 @@ void replace_non_finite(Image& image, const std::string& name) {
 
 Image decode(const Format& format, std::span<const std::byte> bytes, const std::string& name,
              std::size_t max_pixels, Content content) {
-  OIIO::Filesystem::IOMemReader reader(const_cast<std::byte*>(bytes.data()), bytes.size());
-  const auto input = OIIO::ImageInput::create(format.plugin);
-  if (!input) throw_failed(fmt::format("OpenImageIO lacks {}", format.title), {.file = name});
-  OIIO::ImageSpec config, spec;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  input->set_ioproxy(&reader);
-  if (!input->open(name, spec, config)) throw_damaged(format, name, input->geterror());
-  check_size(spec, name, max_pixels);
-  check_file_size(format, spec, name, bytes);
-  Image image(spec.width, spec.height, std::min(spec.nchannels, kMaxChannels));
-  const bool complete =
-      input->read_image(0, 0, 0, image.channel_count, OIIO::TypeDesc::FLOAT, image.pixels.data());
-  const std::string error = input->geterror();
-  if (!complete || !error.empty()) throw_damaged(format, name, error);
+  const auto check = [&](const FileLayout& layout) {
+    check_size(layout, name, max_pixels);
+    check_file_size(format, layout, name, bytes);
+  };
+  Image image = open_image_io().decode(format.plugin, bytes, name, check);
   if (format.in_gltf && content == Content::colour) decode_srgb(image);
   replace_non_finite(image, name);
   return image;
@@ -190,29 +176,14 @@ Image decode_checked(std::span<const std::byte> bytes, const std::string& name,
   }
 }
 
-std::vector<unsigned char> encode(const Image& image, const std::filesystem::path& path,
-                                  bool is_png) {
-  OIIO::ImageSpec spec(image.width, image.height, image.channel_count,
-                       is_png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-  std::vector<std::uint8_t> bytes;
-  if (is_png) {
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    bytes = srgb8_from_linear(image);
-  } else {
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "1970:01:01 00:00:00");  // else the time of day
+std::vector<unsigned char> encode(const Image& image, const std::string& name, bool is_png) {
+  const OpenImageIo& calls = open_image_io();
+  try {
+    return calls.encode(image, is_png ? srgb8_from_linear(image) : std::vector<std::uint8_t>{},
+                        name);
+  } catch (const std::runtime_error& error) {
+    throw_failed("encoding the image failed", {.file = name, .found = error.what()});
   }
-  const auto output = OIIO::ImageOutput::create(is_png ? "png" : "openexr");
-  std::vector<unsigned char> file;
-  OIIO::Filesystem::IOVecOutput proxy(file);
-  const void* data = is_png ? static_cast<const void*>(bytes.data()) : image.pixels.data();
-  if (!output || !output->set_ioproxy(&proxy) || !output->open(path.string(), spec) ||
-      !output->write_image(spec.format, data) || !output->close()) {
-    throw_failed("encoding the image failed",
-                 {.file = path.string(), .found = output ? output->geterror() : "no encoder"});
-  }
-  return file;
 }
 
 }  // namespace
@@ -234,7 +205,7 @@ std::unique_ptr<AtomicFile> prepare_image(const std::filesystem::path& path, con
                 {.file = path.string(), .found = extension, .expected = ".exr or .png"});
   }
   auto file = std::make_unique<AtomicFile>(path, no_clobber);
-  const std::vector<unsigned char> bytes = encode(image, path, extension == ".png");
+  const std::vector<unsigned char> bytes = encode(image, path.string(), extension == ".png");
   file->write(std::as_bytes(std::span(bytes)));
   return file;
 }

@@ -1,0 +1,26 @@
+#include "image/openimageio.h"
+
+#include <dlfcn.h>
+
+#include "core/error.h"
+
+namespace prt::image {
+
+namespace {
+
+const OpenImageIo& load() {
+  constexpr const char* kFile = "prtkit_openimageio.so";  // found by the run path of the program
+  void* library = dlopen(kFile, RTLD_LAZY | RTLD_LOCAL);
+  const void* calls = library ? dlsym(library, "prtkit_openimageio") : nullptr;
+  if (!calls) throw_failed("OpenImageIO cannot be loaded", {.found = dlerror()});
+  return *static_cast<const OpenImageIo*>(calls);
+}
+
+}  // namespace
+
+const OpenImageIo& open_image_io() {
+  static const OpenImageIo& loaded = load();
+  return loaded;
+}
+
+}  // namespace prt::image
