@@ -178,10 +178,27 @@ class FormatSearch {
                                 input_.point_weights);
   }
 
+  /// Tells what is out of reach by the bound of the job, which is the user's.
+  cpca::Found find(const cpca::Bound& bound, double budget) {
+    try {
+      return search_.find(bound, budget);
+    } catch (const Error& error) {
+      if (!bound.max_error) throw;
+      const std::string asked = fmt::format("{:.4g}", *job_.bound.max_error),
+                        searched = fmt::format("{:.4g}", *bound.max_error);
+      throw_failed(
+          "no encoding found within --max-error",
+          {.found = error.details().found,
+           .expected = "at most " + asked +
+                       (searched == asked ? "" : " as stored, " + searched + " as encoded"),
+           .advice = "Allow some more."});
+    }
+  }
+
   cpca::Found find(const cpca::Bound& bound, WeightFormat format) {
     const bool is_first = is_lucky() && format == WeightFormat::unorm8 && !job_.storage.weights;
     const double left = is_first ? 1.0 : 0.0;  // an encoding for the other format
-    cpca::Found found = search_.find(bound, cpca::kBudget - left);
+    cpca::Found found = find(bound, cpca::kBudget - left);
     for (const cpca::Trial& trial : found.trials) {
       nlohmann::ordered_json row = {{"first_cluster_count", trial.first_cluster_count},
                                     {"cluster_count", trial.choice.cluster_count},

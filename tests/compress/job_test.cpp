@@ -197,6 +197,20 @@ TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
   EXPECT_LE(stored({}).relative_rmse(), 0.0005);
 }
 
+TEST_F(CompressedModel, NamesTheBoundOfTheUserWhenNothingIsWithin) {
+  job_.method = "vq";
+  job_.bound.max_error = 1e-7;
+  Report report("test");
+  try {
+    run(job_, report);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::failed);
+    EXPECT_EQ(error.details().expected, "at most 1e-07 as stored, 9.759e-08 as encoded");
+    EXPECT_TRUE(error.details().found.starts_with("a relative error of ")) << error.what();
+  }
+}
+
 // The room for rounding takes integers beyond what one vector a cluster reaches.
 TEST_F(CompressedModel, AutoGoesOnWhereOneFormatFindsNothing) {
   job_.method = "adaptive";
