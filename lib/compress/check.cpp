@@ -63,6 +63,9 @@ void check(const Job& job) {
   if (job.bound.max_error && job.bound.norm == cpca::Norm::rmse && *job.bound.max_error >= 1.0) {
     reject("--max-error of 1 or more is the error of no encoding at all", "0.01 is one percent.");
   }
+  if (job.bound.max_bytes == 0u) {
+    reject("--max-bytes has to be above 0", "No encoding takes no bytes.");
+  }
   if (is_bounded && (job.cluster_count || job.component_count)) {
     reject("--max-error and --max-bytes choose clusters and components",
            "Leave --clusters and --components out.");

@@ -275,32 +275,5 @@ TEST_F(CompressedModel, AnInterruptedRunIsContinuedByOneOfTheSameSignalAndOption
   EXPECT_EQ(resumed_iterations([](Job&) {}), 0);
 }
 
-TEST(CheckJob, RefusesWhatAModelHasNoRoomForBeforeTheWork) {
-  const auto message = [](auto change) -> std::string {
-    Job job;
-    job.model = "a.glb";
-    job.transfer = "a.transfer.exr";
-    job.output = "b.glb";
-    change(job);
-    try {
-      check(job);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-      return error.what();
-    }
-    return "no error";
-  };
-  EXPECT_EQ(message([](Job&) {}), "no error");
-  EXPECT_EQ(message([](Job& job) { job.cluster_count = 65537; }),
-            "--clusters beyond what a model has room for: found 65537, expected at most 65536");
-  EXPECT_EQ(message([](Job& job) { job.component_count = 257; }),
-            "--components beyond what a model has room for: found 257, expected at most 256");
-  EXPECT_EQ(message([](Job& job) {
-              job.method = "adaptive";
-              job.max_component_count = 300;
-            }),
-            "--max-components beyond what a model has room for: found 300, expected at most 256");
-}
-
 }  // namespace
 }  // namespace prt::compress
