@@ -116,6 +116,25 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   throw_failed(what + ": " + std::strerror(errno), {.file = path.string()});
 }
 
+/// Whether a file or folder can be made where `path` says.
+void check_place(const std::filesystem::path& path) {
+  const std::filesystem::path folder = folder_of(resolved(path));
+  struct stat status {};
+  int reason = 0;
+  if (stat(folder.c_str(), &status) != 0) {
+    reason = errno;
+  } else if (!S_ISDIR(status.st_mode)) {
+    reason = ENOTDIR;
+  } else if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    reason = errno;
+  }
+  if (reason == 0) return;
+  throw_failed(
+      fmt::format("nothing can be written in {}: {}", folder.string(), std::strerror(reason)),
+      {.file = path.string(),
+       .advice = reason == ENOENT ? "Create " + folder.string() + " first." : ""});
+}
+
 /// So that a new name in it lasts. Folders of some file systems cannot be synced: as good as none.
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -189,13 +208,7 @@ void check_output(const std::filesystem::path& path, bool no_clobber) {
     throw_failed("exists and is not a regular file",
                  {.file = path.string(), .advice = "Give another name."});
   }
-  const std::filesystem::path target = resolved(path);
-  const std::filesystem::path folder = folder_of(target);
-  if (stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) {
-    throw_failed("output folder does not exist",
-                 {.file = path.string(), .advice = "Create " + folder.string() + " first."});
-  }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw_system("cannot write in the folder", path);
+  check_place(path);
 }
 
 void check_output_folder(const std::filesystem::path& path) {
@@ -203,7 +216,8 @@ void check_output_folder(const std::filesystem::path& path) {
   const std::filesystem::path name = path.has_filename() ? path : path.parent_path();
   if (!std::filesystem::exists(name)) return check_output(name, false);
   if (!std::filesystem::is_directory(name)) {
-    throw_failed("exists and is no folder", {.file = path.string()});
+    throw_failed("exists and is no folder",
+                 {.file = path.string(), .advice = "Name a folder, or one that is to be made."});
   }
 }
 

@@ -60,14 +60,34 @@ TEST_F(AtomicFileTest, NoClobberRefusesAnExistingFile) {
   EXPECT_EQ(read_text_file(folder_ / "b.txt"), "theirs");
 }
 
-TEST_F(AtomicFileTest, MissingFolderIsAnErrorThatNamesIt) {
+/// What is said of a place that nothing can be written in.
+template <class Check>
+std::string message(Check check) {
   try {
-    AtomicFile file(folder_ / "missing" / "a.txt");
-    FAIL();
+    check();
   } catch (const Error& error) {
-    EXPECT_EQ(error.exit_status(), 1);
-    EXPECT_NE(std::string(error.what()).find("missing"), std::string::npos);
+    EXPECT_EQ(error.kind(), ErrorKind::failed);
+    return error.what();
   }
+  return "no error";
+}
+
+TEST_F(AtomicFileTest, APlaceThatCannotBeWrittenIsNamedWithTheReason) {
+  const fs::path missing = folder_ / "missing";
+  EXPECT_EQ(message([&] { AtomicFile(missing / "a.txt"); }),
+            (missing / "a.txt").string() + ": nothing can be written in " + missing.string() +
+                ": No such file or directory. Create " + missing.string() + " first.");
+  for (const auto& check : {+[] { check_output("/dev/null/a.txt", false); },
+                            +[] { check_output_folder("/dev/null/a.txt"); },
+                            +[] { check_output_folder("/dev/null/a.txt/"); }}) {
+    EXPECT_EQ(message(check),
+              "/dev/null/a.txt: nothing can be written in /dev/null: Not a directory");
+  }
+  folder_.write("file", "");
+  EXPECT_EQ(message([&] { check_output_folder(folder_ / "file"); }),
+            (folder_ / "file").string() +
+                ": exists and is no folder. Name a folder, or one that is to be made.");
+  EXPECT_EQ(message([&] { check_output_folder(folder_ / "new"); }), "no error");
 }
 
 TEST_F(AtomicFileTest, SignalRemovesTheTemporaryFile) {
