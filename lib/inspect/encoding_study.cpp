@@ -38,6 +38,27 @@ std::vector<double> errors_by_count(const cpca::Encoding& encoding,
   return by_count;
 }
 
+/// An adaptive encoding from the clusters of an iterative one, which it would begin with anyway.
+cpca::Encoding adapt(const signal::TransferSignal& signal, int component_count, int cluster_count,
+                     const std::vector<std::uint32_t>& labels, double squared_error) {
+  return cpca::encode_adaptive(signal.values, signal.dimension(),
+                               {.cluster_count = cluster_count,
+                                .component_count = component_count,
+                                .start = {.labels = labels, .squared_error = squared_error}})
+      .encoding;
+}
+
+/// Of static encodings, which are 1, 4, 16 … up to these.
+int most_static_clusters(std::size_t point_count) {
+  int most = 1;
+  while (4 * most <= std::min(static_cast<int>(point_count) / 32, kMostClusters)) most *= 4;
+  return most;
+}
+
+bool has_adaptive(int component_count, int most) {
+  return component_count == most || std::ranges::count(kVectorCounts, component_count) > 0;
+}
+
 std::vector<double> counts_up_to(int most) {
   std::vector<double> counts(static_cast<std::size_t>(most) + 1);
   std::iota(counts.begin(), counts.end(), 0.0);
@@ -48,8 +69,7 @@ std::vector<double> counts_up_to(int most) {
 
 LinePlot error_over_storage(const signal::TransferSignal& signal) {
   const auto point_count = static_cast<int>(signal.vertex_count());
-  int most = 1;
-  while (4 * most <= std::min(point_count / 32, kMostClusters)) most *= 4;
+  const int most = most_static_clusters(signal.vertex_count());
   LinePlot plot{
       .title = fmt::format(
           "Squared error over storage, static CPCA of 1, 4, 16 ... clusters up to {}", most),
@@ -89,22 +109,20 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
       {"static", counts_up_to(most), errors_by_count(fixed.encoding, signal.values)});
   cpca::IterativeEncoder iterative(signal.values, static_cast<std::size_t>(signal.dimension()),
                                    options);
-  Series& curve = plot.series.emplace_back(Series{"iterative", {}, {}});
+  Series curve{"iterative", {}, {}}, adaptive{"adaptive", {}, {}};
   for (int n = 0; n <= most; ++n) {
     iterative.run_level();
+    const double error = iterative.measure();
     curve.x.push_back(n);
-    curve.y.push_back(iterative.measure());
-  }
-  Series& adaptive = plot.series.emplace_back(Series{"adaptive", {}, {}});
-  for (const int n : kVectorCounts) {
-    if (n == 0 || n > most) continue;
-    cpca::Options fewer = options;
-    fewer.component_count = n;
-    const cpca::Encoded encoded = cpca::encode_adaptive(signal.values, signal.dimension(), fewer);
-    const std::vector<double> errors = cpca::point_errors(encoded.encoding, signal.values);
+    curve.y.push_back(error);
+    if (!has_adaptive(n, most)) continue;
+    const auto errors = cpca::point_errors(
+        adapt(signal, n, cluster_count, iterative.clusterer().labels(), error), signal.values);
     adaptive.x.push_back(n);
     adaptive.y.push_back(std::accumulate(errors.begin(), errors.end(), 0.0));
   }
+  plot.series.push_back(std::move(curve));
+  plot.series.push_back(std::move(adaptive));
   return plot;
 }
 
@@ -134,10 +152,12 @@ std::vector<EncodingError> errors_by_method(const signal::TransferSignal& signal
                                             const cpca::Encoding& iterative) {
   const cpca::Options options{.cluster_count = iterative.cluster_count,
                               .component_count = iterative.component_count};
-  const int n = signal.dimension();
-  return {error_of("static", cpca::encode_static(signal.values, n, options).encoding, signal),
-          error_of("iterative", iterative, signal),
-          error_of("adaptive", cpca::encode_adaptive(signal.values, n, options).encoding, signal)};
+  const cpca::Encoded fixed = cpca::encode_static(signal.values, signal.dimension(), options);
+  const EncodingError error = error_of("iterative", iterative, signal);
+  const cpca::Encoding adaptive = adapt(signal, iterative.component_count, iterative.cluster_count,
+                                        iterative.cluster_of_point, error.squared_error);
+  return {error_of("static", fixed.encoding, signal), error,
+          error_of("adaptive", adaptive, signal)};
 }
 
 CoherenceStudy study_coherence(const signal::TransferSignal& signal,

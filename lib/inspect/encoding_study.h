@@ -17,7 +17,8 @@ namespace prt::inspect {
 LinePlot error_over_storage(const signal::TransferSignal& signal);
 
 /// [Sloan03] Figure 3: squared error over n' = 0 … `most_components`, a curve for each method; the
-/// adaptive one, which is encoded anew for each n', at 1, 2, 4, 8.
+/// adaptive one, which has to be encoded for each n', at 0, 1, 2, 4, 8 … and the last. Its
+/// encodings begin with the clusters of the iterative one.
 LinePlot error_over_components(const signal::TransferSignal& signal, int cluster_count,
                                int most_components);
 
