@@ -126,6 +126,26 @@ LinePlot error_over_components(const signal::TransferSignal& signal, int cluster
   return plot;
 }
 
+// As measured of a bunny of 34,835 vertices, 75 coefficients and 256 clusters: a level of n vectors
+// takes 3 + n, 0.1 s on two cores, an adaptive encoding from there 8 + 6 n, and a static
+// encoding 4.
+StudyWork study_work(std::size_t point_count, int cluster_count, int component_count,
+                     int most_components) {
+  const auto levels = [](int n) { return 3.0 * (n + 1) + 0.5 * n * (n + 1); };
+  const auto adaptive = [](int n) { return 8.0 + 6.0 * n; };
+  constexpr double kStatic = 4.0;
+  StudyWork work{.iterative = levels(component_count),
+                 .methods = kStatic + adaptive(component_count),
+                 .components = kStatic + levels(most_components)};
+  for (int k = 1; k <= most_static_clusters(point_count); k *= 4) {
+    work.storage += kStatic * k / cluster_count;
+  }
+  for (int n = 0; n <= most_components; ++n) {
+    if (has_adaptive(n, most_components)) work.components += adaptive(n);
+  }
+  return work;
+}
+
 cpca::Encoding encode_iteratively(const signal::TransferSignal& signal, int cluster_count,
                                   int component_count) {
   return cpca::encode_iterative(

@@ -31,6 +31,15 @@ cpca::Encoding encode_iteratively(const signal::TransferSignal& signal, int clus
 std::vector<EncodingError> errors_by_method(const signal::TransferSignal& signal,
                                             const cpca::Encoding& iterative);
 
+/// How long these take in proportion, about: encode_iteratively, errors_by_method,
+/// error_over_storage and error_over_components, for a signal of so many points and the counts that
+/// they are given.
+struct StudyWork {
+  double iterative = 0.0, methods = 0.0, storage = 0.0, components = 0.0;
+};
+StudyWork study_work(std::size_t point_count, int cluster_count, int component_count,
+                     int most_components);
+
 /// Of an encoding, as CompressionError has them.
 EncodingError error_of(const std::string& name, const cpca::Encoding& encoding,
                        const signal::TransferSignal& signal);

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/stopwatch.h"
 #include "cpca/overdraw.h"
 #include "cpca/superclusters.h"
 #include "gltf/document.h"
@@ -125,6 +126,32 @@ int average_component_count(const cpca::Encoding& encoding) {
   return static_cast<int>(std::lround(sum / static_cast<double>(encoding.point_count)));
 }
 
+/// Tells how long the encodings of plots take: beforehand as a multiple of the first of them, then
+/// by what is done.
+class TimeLeft {
+ public:
+  explicit TimeLeft(const StudyWork& work)
+      : left_(work.iterative + work.methods + work.storage + work.components) {
+    log::info(
+        "encoding the transfer anew for plots, which takes about {:.0f} times as long as "
+        "prt-compress --method iterative",
+        left_ / work.iterative);
+  }
+
+  void pass(double work) {
+    done_ += work;
+    left_ -= work;
+    const double seconds = stopwatch_.seconds() * left_ / done_;
+    if (seconds >= kNoticed) log::info("plots: about {:.0f} s left", seconds);
+  }
+
+ private:
+  static constexpr double kNoticed = 2.0;  // seconds
+
+  const Stopwatch stopwatch_;
+  double done_ = 0.0, left_;
+};
+
 // The file beside what each method makes of the same counts.
 Plot error_plot(const mesh::Scene& scene, const signal::TransferSignal& signal,
                 const EncodingError& stored, const cpca::Encoding& iterative) {
@@ -182,14 +209,20 @@ std::vector<Plot> plots_of_compression(const std::filesystem::path& path,
                    plot(histogram, "Compression error of " + path.filename().string(),
                         "error of a vertex / root mean square transfer"),
                    to_csv(histogram)});
-  const int clusters = model.transfer.encoding.cluster_count;
-  const cpca::Encoding iterative =
-      encode_iteratively(signal, clusters, average_component_count(model.transfer.encoding));
+  const int clusters = model.transfer.encoding.cluster_count,
+            components = average_component_count(model.transfer.encoding),
+            most = std::min(kMostComponents, signal.dimension());
+  const StudyWork work = study_work(signal.vertex_count(), clusters, components, most);
+  TimeLeft time(work);
+  const cpca::Encoding iterative = encode_iteratively(signal, clusters, components);
+  time.pass(work.iterative);
   const EncodingError stored{"this file", error.json["squared_error"], error.relative};
   plots.push_back(error_plot(model.scene, signal, stored, iterative));
+  time.pass(work.methods);
   const LinePlot storage = error_over_storage(signal);
   plots.push_back({"error-over-storage", draw(storage), to_csv(storage)});
-  const LinePlot methods = error_over_components(signal, clusters, kMostComponents);
+  time.pass(work.storage);
+  const LinePlot methods = error_over_components(signal, clusters, most);
   plots.push_back({"error-over-components", draw(methods), to_csv(methods)});
   const CoherenceStudy study = study_coherence(signal, model.scene.indices(), iterative);
   plots.push_back(label_plot("clusters-before", model.scene, study.before));

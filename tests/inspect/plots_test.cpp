@@ -100,6 +100,15 @@ TEST(EncodingStudy, MethodsStartAlikeAndFallWithEveryVector) {
   EXPECT_LT(plot.series[2].y.back(), 1.001 * plot.series[1].y.back());
 }
 
+TEST(EncodingStudy, WorkGrowsWithWhatIsEncoded) {
+  const StudyWork work = study_work(640, 8, 2, 4);
+  EXPECT_GT(study_work(640, 8, 3, 4).iterative, work.iterative);
+  EXPECT_GT(study_work(640, 8, 3, 4).methods, work.methods);
+  EXPECT_NEAR(study_work(640, 16, 2, 4).storage, work.storage / 2, 1e-9);  // in larger units
+  EXPECT_GT(study_work(2560, 8, 2, 4).storage, work.storage);
+  EXPECT_GT(study_work(640, 8, 2, 5).components, work.components);
+}
+
 TEST(LinePlot, WritesEveryPointAndDrawsItWhereItBelongs) {
   const LinePlot plot{.title = "t",
                       .x_label = "x",
@@ -207,9 +216,12 @@ TEST_F(PlotsTest, AreThoseThatAreAnnounced) {
   const auto model = write_baked(transfer());
   std::vector<std::string> names = names_of(plots_of_model(model));
   EXPECT_EQ(names, (std::vector<std::string>{"clusters", "superclusters", "vector-variance"}));
+  testing::internal::CaptureStderr();
   for (const std::string& name : names_of(plots_of_compression(model, write_transfer()))) {
     names.push_back(name);
   }
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("encoding the transfer anew"),
+            std::string::npos);
   names.insert(names.begin() + 3, "vectors");  // of adaptive ones
   EXPECT_EQ(names, plot_names(true));
   EXPECT_THROW(plots_of_model(write_model()), Error);
