@@ -21,6 +21,7 @@ struct Options {
   std::vector<fs::path> compare;  ///< image, reference
   inspect::ComparisonFiles comparison;
   bool json = false, hemisphere = false;
+  bool is_beside = false;  ///< whether the transfer is to be that beside the file, if it is there
 };
 
 void add_options(cli::Options& app, Options& options) {
@@ -72,7 +73,8 @@ void check_usage(const Options& options) {
 void check_files(Options& options, const cli::CommonOptions& common) {
   std::vector<cli::Output> outputs{{options.comparison.heatmap, {".png", ".exr"}, {}}};
   if (!options.plots.empty()) {
-    if (options.transfer.empty()) options.transfer = inspect::transfer_beside(options.file);
+    options.is_beside = options.transfer.empty();
+    if (options.is_beside) options.transfer = inspect::transfer_beside(options.file);
     check_output_folder(options.plots);
     for (const fs::path& file : inspect::plot_files(options.plots, !options.transfer.empty())) {
       outputs.push_back({file, {file.extension().string()}, {}});
@@ -92,6 +94,9 @@ bool inspect_one(const Options& options, bool no_clobber, Report& report, inspec
     json = inspection.json;
     if (!inspection.valid()) return false;
   }
+  if (options.plots.empty() && options.transfer.empty()) return true;
+  inspect::check_compressed(json);
+  if (options.is_beside) inspect::tell_transfer_beside(options.file);
   if (!options.plots.empty()) {
     const StageTimer timer(report, "plots");
     write_plots(inspect::plots_of_model(options.file), options.plots, no_clobber, report);

@@ -94,4 +94,14 @@ Inspection inspect_file(const std::filesystem::path& path) {
   return inspection;
 }
 
+void check_compressed(const Json& result) {
+  if (result.contains("precomputed_transfer")) return;
+  throw_bad_input("holds no compressed transfer",
+                  {.file = result["file"],
+                   .found = result["kind"].get<std::string>() == "model"
+                                ? "a model alone"
+                                : "a file of kind " + result["kind"].get<std::string>(),
+                   .expected = "a model that prt-compress has written"});
+}
+
 }  // namespace prt::inspect

@@ -45,6 +45,9 @@ void inspect_transfer(const std::filesystem::path& path, Inspection& inspection)
 void inspect_light(const std::filesystem::path& path, Inspection& inspection);
 void inspect_image(const std::filesystem::path& path, Inspection& inspection);
 
+/// Throws Error (bad_input) unless the result is that of a model with compressed transfer.
+void check_compressed(const Json& result);
+
 /// JSON for people: aligned names and values, lists of objects as tables.
 std::string to_text(const Json& json);
 

@@ -117,6 +117,12 @@ Plot variance_plot(const cpca::Encoding& encoding) {
   return {"vector-variance", draw(plot), to_csv(plot)};
 }
 
+std::filesystem::path name_beside(const std::filesystem::path& model) {
+  std::filesystem::path name = model.filename().replace_extension();
+  if (name.extension() == ".prt") name.replace_extension();
+  return name += ".transfer.exr";
+}
+
 /// n' of an adaptive encoding: the average over points.
 int average_component_count(const cpca::Encoding& encoding) {
   double sum = 0.0;
@@ -182,19 +188,20 @@ std::vector<Plot> plots_of_model(const std::filesystem::path& path) {
 }
 
 std::filesystem::path transfer_beside(const std::filesystem::path& model) {
-  std::filesystem::path name = model.filename().replace_extension();
-  if (name.extension() == ".prt") name.replace_extension();
-  name += ".transfer.exr";
-  std::filesystem::path path = model.parent_path() / name;
+  const std::filesystem::path path = model.parent_path() / name_beside(model);
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) {
+  return std::filesystem::is_regular_file(path, error) ? path : std::filesystem::path();
+}
+
+void tell_transfer_beside(const std::filesystem::path& model) {
+  const std::filesystem::path path = transfer_beside(model);
+  if (!path.empty()) {
     log::info("taking {} for the transfer that {} was compressed from", path.string(),
               model.string());
-    return path;
+    return;
   }
   log::warning("without --transfer, or {} beside the model, these plots are left out: {}",
-               name.string(), fmt::join(kPlotsOfTransfer, ", "));
-  return {};
+               name_beside(model).string(), fmt::join(kPlotsOfTransfer, ", "));
 }
 
 std::vector<Plot> plots_of_compression(const std::filesystem::path& path,

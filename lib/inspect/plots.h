@@ -28,9 +28,11 @@ inline const std::vector<std::string> kPlotsOfTransfer{
     "clusters-superclustered"};
 
 /// The transfer that lies beside a model as prt-transfer and Makefile.assets leave it, NAME.prt.glb
-/// or NAME.glb and NAME.transfer.exr; empty if there is none. A message tells which, and what is
-/// left out without it.
+/// or NAME.glb and NAME.transfer.exr; empty if there is none.
 std::filesystem::path transfer_beside(const std::filesystem::path& model);
+
+/// Tells which that is, or what is left out without it.
+void tell_transfer_beside(const std::filesystem::path& model);
 
 /// What the transfer that it was compressed from adds: `error-histogram`, and beside the model's
 /// what other encodings of that signal would give: `error`, by method, `error-over-storage`,

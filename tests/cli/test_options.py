@@ -75,7 +75,13 @@ class Options(ToolTest):
     def test_a_folder_for_plots_is_made_when_there_are_plots(self):
         light, plots = self.folder / "l.json", self.folder / "plots"
         self.done("prt-light", "--constant", "1,1,1", "-o", light)
-        self.refused(BAD_INPUT, "l.json", "prt-inspect", light, "--plots", plots)
+        for file, found in ((light, "a file of kind light"), (self.quad, "a model alone")):
+            result = self.refused(BAD_INPUT, f"{file}: holds no compressed transfer: found {found}",
+                                  "prt-inspect", file, "--plots", plots)
+            self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        result = self.refused(BAD_INPUT, "no such file", "prt-inspect", self.folder / "none.glb",
+                              "--plots", plots)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
         self.assertFalse(plots.exists())
         self.refused(FAILED, "no folder", "prt-inspect", self.quad, "--plots", self.source)
         self.refused(FAILED, "no folder", "prt-inspect", self.quad, "--plots", f"{self.source}/")
@@ -86,7 +92,8 @@ class Options(ToolTest):
         self.done("prt-compress", self.quad, transfer, "-o", baked, "--method", "vq", "--clusters",
                   1)
         for name in ("plots", "slash/", "slash/"):  # made, made, and there already
-            self.done("prt-inspect", baked, "--plots", f"{self.folder}/{name}")
+            result = self.done("prt-inspect", baked, "--plots", f"{self.folder}/{name}")
+            self.assertIn("these plots are left out", result.stderr)
             self.assertTrue((self.folder / name / "clusters.png").exists(), name)
 
     def test_a_model_is_no_transfer(self):
