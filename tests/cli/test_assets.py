@@ -4,7 +4,7 @@ import pathlib
 import subprocess
 import unittest
 
-from toolbox import BIN, SOURCE, ToolTest, QUAD_OBJ
+from toolbox import BIN, QUAD_OBJ, SOURCE, WRONG_USAGE, ToolTest
 
 
 class Assets(ToolTest):
@@ -43,6 +43,16 @@ class Assets(ToolTest):
         self.write("out/sheet.transfer.exr.partial", "of an interrupted bake")
         self.make("clean")
         self.assertEqual(list((self.folder / "out").iterdir()), [])
+
+    def test_names_the_assets_that_there_are_when_asked_for_another(self):
+        result = subprocess.run(["make", "-f", SOURCE / "Makefile.assets", "wrongname", "-n"],
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, WRONG_USAGE, result.stderr)
+        self.assertIn("no asset wrongname: there are bunny colored_box two_polygons.",
+                      result.stderr)
+        other = subprocess.run(["make", "-C", self.folder, "wrongname"], capture_output=True,
+                               text=True, timeout=60)
+        self.assertNotIn("no asset", other.stderr)  # a project has targets of its own
 
 
 if __name__ == "__main__":
