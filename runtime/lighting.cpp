@@ -2,7 +2,6 @@
 
 #include <ImathMatrixAlgo.h>
 
-#include <algorithm>
 #include <array>
 #include <numbers>
 #include <vector>

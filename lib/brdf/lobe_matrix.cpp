@@ -1,7 +1,6 @@
 #include "brdf/lobe_matrix.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <functional>

@@ -1,7 +1,6 @@
 #include <epoxy/egl.h>
 
 #include <array>
-#include <string>
 
 #include "core/error.h"
 #include "gl/context.h"

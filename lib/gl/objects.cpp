@@ -3,7 +3,6 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "core/error.h"
 #include "gl/context.h"

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
+#include <limits>
 
-#include "core/checked.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/reference.h"

@@ -1,5 +1,3 @@
-#include <array>
-
 #include "gltf/container.h"
 
 namespace prt::gltf {

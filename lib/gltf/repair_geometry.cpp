@@ -1,7 +1,5 @@
 #include "gltf/repair_geometry.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 #include <set>

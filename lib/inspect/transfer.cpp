@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "inspect/inspection.h"
 #include "inspect/statistics.h"
 #include "signal/transfer_signal.h"

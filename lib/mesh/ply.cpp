@@ -5,7 +5,6 @@
 #include <cstring>
 #include <limits>
 
-#include "core/checked.h"
 #include "core/error.h"
 #include "image/srgb.h"
 #include "mesh/mesh_file.h"

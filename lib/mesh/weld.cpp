@@ -1,6 +1,5 @@
 #include "mesh/weld.h"
 
-#include <functional>
 #include <string_view>
 #include <unordered_map>
 

@@ -1,6 +1,5 @@
 #include "sh/basis.h"
 
-#include <array>
 #include <cassert>
 
 #include "sh/recurrence.h"

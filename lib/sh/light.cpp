@@ -1,6 +1,5 @@
 #include "sh/light.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,5 @@
 #include "sh/zonal.h"
 
-#include <cassert>
 #include <cmath>
 #include <numbers>
 

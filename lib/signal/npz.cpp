@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <cassert>
 #include <cstdint>
 
 #include "core/atomic_file.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/range.h"
