@@ -7,6 +7,7 @@
 #include "core/log.h"
 #include "core/stopwatch.h"
 #include "gl/context.h"
+#include "runtime/light_inside.h"
 #include "runtime/picture.h"
 
 namespace prt::runtime {
@@ -92,6 +93,7 @@ void render(const RenderOptions& options, Report& report) {
   check_output(picture.output, picture.no_clobber);
   std::optional<StageTimer> stage(std::in_place, report, "load model");
   const Model model = load_model(picture.model, options.transfer);
+  warn_of_lights_inside(model, options.near_lights);
   View view = make_view(options, model);
   stage.emplace(report, "load light");
   const Lighting lighting = make_distant_lighting(options, model);

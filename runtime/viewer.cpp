@@ -17,6 +17,7 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "image/image.h"
+#include "runtime/light_inside.h"
 #include "runtime/picture.h"
 
 namespace prt::runtime {
@@ -125,6 +126,7 @@ void Viewer::load_model_file(const fs::path& path, const fs::path& transfer) {
   if (path.empty()) throw Error(ErrorKind::usage, "open a model before its transfer");
   const Model model = load_model(path, transfer);
   renderer_.set_model(model);
+  warn_of_lights_inside(model, options_.near_lights);
   const bool same_model = path == model_path_;
   model_path_ = path;
   model_band_count_ = model.band_count();
