@@ -48,6 +48,12 @@ std::string kind_of(const std::filesystem::path& path) {
   }
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != text.npos && text[first] == '{') return kind_of_json(path, text);
+  if (text.starts_with("PK\x03\x04")) {
+    throw_bad_input("arrays of NumPy's, or another ZIP archive, which are not inspected",
+                    {.file = path.string(),
+                     .advice = "numpy.load reads what prt-compress --signal writes, and its "
+                               "--report has the figures."});
+  }
   throw_bad_input("unknown kind of file",
                   {.file = path.string(),
                    .expected = "glTF, OpenEXR, Radiance HDR, PNG, JPEG, or a light of prt-light"});

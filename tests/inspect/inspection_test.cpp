@@ -10,6 +10,7 @@
 #include "image/image.h"
 #include "sample_files.h"
 #include "sh/light.h"
+#include "signal/npz.h"
 
 namespace prt::inspect {
 namespace {
@@ -165,6 +166,18 @@ TEST_F(InspectionTest, RejectsUnknownAndMissingFiles) {
   std::ofstream(path) << "hello";
   EXPECT_THROW(inspect_file(path), Error);
   EXPECT_THROW(inspect_file(folder() / "missing.glb"), Error);
+}
+
+TEST_F(InspectionTest, SaysWhatReadsTheArraysThatCompressWrites) {
+  const auto path = folder() / "x.npz";
+  signal::write_npz(path, std::vector{signal::make_array("a", "<f4", {2}, std::vector{1.f, 2.f})});
+  try {
+    inspect_file(path);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    EXPECT_TRUE(error.details().advice.starts_with("numpy.load reads")) << error.what();
+  }
 }
 
 }  // namespace
