@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "core/random.h"
+#include "cpca/draw_points.h"
 #include "cpca/search_choice.h"
 
 namespace prt::cpca {
@@ -14,15 +14,9 @@ namespace {
 constexpr std::size_t kSurveyShare = 4, kLeastSample = 128;
 constexpr std::size_t kCopyBlock = 512;
 
-/// One point out of each of equally long stretches of the signal.
 void draw(Sample& sample, std::span<const float> signal, std::size_t n, const Options& options) {
   Pcg32 random(options.seed);
-  std::vector<std::size_t> points(sample.count);
-  for (std::size_t s = 0; s < sample.count; ++s) {
-    const std::size_t begin = s * sample.all_count / sample.count;
-    const std::size_t length = (s + 1) * sample.all_count / sample.count - begin;
-    points[s] = begin + random.below(static_cast<std::uint32_t>(length));
-  }
+  const std::vector<std::size_t> points = draw_points(sample.all_count, sample.count, random);
   sample.rows.resize(sample.count * n);
   parallel_for(sample.count, kCopyBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {

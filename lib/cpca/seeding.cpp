@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "cpca/distance.h"
+#include "cpca/draw_points.h"
 
 namespace prt::cpca {
 
@@ -18,18 +19,6 @@ constexpr std::size_t kSeedingBlock = 512, kLine = 64 / sizeof(float);  ///< of 
 /// A mean whose squared distance to another is so many times a point's is further from the point,
 /// by the triangle inequality; with room for rounding.
 constexpr double kFar = 4.0001;
-
-/// One point out of each of equally long stretches of so many.
-std::vector<std::size_t> draw_points(std::size_t point_count, std::size_t sample_count,
-                                     Pcg32& random) {
-  std::vector<std::size_t> points(sample_count);
-  for (std::size_t s = 0; s < sample_count; ++s) {
-    const std::size_t begin = s * point_count / sample_count;
-    const std::size_t length = (s + 1) * point_count / sample_count - begin;
-    points[s] = begin + random.below(static_cast<std::uint32_t>(length));
-  }
-  return points;
-}
 
 /// Index drawn in proportion to `weights`; any when all are zero.
 std::size_t draw(std::span<const double> weights, std::span<const double> block_sums,
