@@ -30,6 +30,9 @@ struct Survey {
 Survey make_survey(const Bound& bound, Method method, std::span<const float> signal, int dimension,
                    const Options& options);
 
+/// Vectors of one cluster, at most: of more coefficients it is not taken apart into all of them.
+constexpr int kMostWhole = 256;
+
 /// More clusters are not worth it: points of them are as few as their vectors.
 int most_clusters(std::size_t point_count);
 
