@@ -7,6 +7,7 @@
 #include "cpca/iterative_encoder.h"
 #include "cpca/kept.h"
 #include "cpca/stage_clock.h"
+#include "cpca/trim.h"
 
 namespace prt::cpca {
 
@@ -15,12 +16,6 @@ namespace {
 /// Power steps after a classification, and before the first, for vectors beyond those of the
 /// iterative method.
 constexpr int kAdaptSteps = 2, kFirstAdaptSteps = 8;
-
-std::vector<std::size_t> point_counts(const PointsByCluster& points) {
-  std::vector<std::size_t> counts;
-  for (std::size_t k = 0; k + 1 < points.offsets.size(); ++k) counts.push_back(points.of(k).size());
-  return counts;
-}
 
 /// Alternations come in cycles that begin with some at a smaller budget: clusters that the
 /// iterative method fitted to the same number of vectors each hardly part from it otherwise. These
@@ -117,62 +112,6 @@ class Adaptation {
   double least_ = std::numeric_limits<double>::infinity();
   std::vector<double> errors_;
 };
-
-/// Σ D_i² of the first vectors of the clusters.
-double captured(std::span<const double> variances, std::size_t most,
-                std::span<const std::uint32_t> counts) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    for (std::size_t i = 0; i < counts[k]; ++i) sum += variances[k * most + i];
-  }
-  return sum;
-}
-
-/// Leaves each cluster the vectors that are worth most, of an encoding that has the same number of
-/// them in each.
-void trim(std::span<const float> point_weights, std::size_t budget, Encoding& encoding) {
-  const auto most = static_cast<std::size_t>(encoding.component_count);
-  const auto n = static_cast<std::size_t>(encoding.dimension);
-  const auto cluster_count = static_cast<std::size_t>(encoding.cluster_count);
-  std::vector<double> variances(cluster_count * most);
-  for (std::size_t p = 0; p < encoding.point_count; ++p) {
-    for (std::size_t i = 0; i < most; ++i) {
-      const double weight = encoding.weights[p * most + i];
-      variances[encoding.cluster_of_point[p] * most + i] +=
-          weight * weight * (point_weights.empty() ? 1.0 : double{point_weights[p]});
-    }
-  }
-  std::vector<std::uint32_t>& counts = encoding.component_counts;
-  counts = allocate(variances, most,
-                    point_counts(sort_by_cluster(encoding.cluster_of_point, cluster_count)), budget)
-               .counts;
-  std::vector<std::uint32_t> alike(cluster_count);
-  for (std::size_t k = 0; k < cluster_count; ++k) {
-    const std::size_t wanted = std::min(most, budget / encoding.point_count);
-    while (alike[k] < wanted && variances[k * most + alike[k]] > 0.0) ++alike[k];
-  }
-  if (captured(variances, most, alike) > captured(variances, most, counts)) counts = alike;
-  const std::size_t left = *std::max_element(counts.begin(), counts.end());
-  for (std::size_t k = 0; k < cluster_count; ++k) {
-    for (std::size_t i = 0; i < left; ++i) {
-      float* to = &encoding.bases[(k * left + i) * n];
-      if (i < counts[k]) {
-        std::copy_n(&encoding.bases[(k * most + i) * n], n, to);
-      } else {
-        std::fill_n(to, n, 0.0f);
-      }
-    }
-  }
-  for (std::size_t p = 0; p < encoding.point_count; ++p) {
-    const std::size_t count = counts[encoding.cluster_of_point[p]];
-    for (std::size_t i = 0; i < left; ++i) {
-      encoding.weights[p * left + i] = i < count ? encoding.weights[p * most + i] : 0.0f;
-    }
-  }
-  encoding.component_count = static_cast<int>(left);
-  encoding.bases.resize(cluster_count * left * n);
-  encoding.weights.resize(encoding.point_count * left);
-}
 
 }  // namespace
 

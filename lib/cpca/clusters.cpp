@@ -32,4 +32,10 @@ PointsByCluster sort_by_cluster(std::span<const std::uint32_t> labels, std::size
   return sort(labels.size(), labels, cluster_count, [](std::size_t i) { return i; });
 }
 
+std::vector<std::size_t> point_counts(const PointsByCluster& points) {
+  std::vector<std::size_t> counts;
+  for (std::size_t k = 0; k + 1 < points.offsets.size(); ++k) counts.push_back(points.of(k).size());
+  return counts;
+}
+
 }  // namespace prt::cpca

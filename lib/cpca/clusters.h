@@ -25,4 +25,7 @@ PointsByCluster sort_by_cluster(std::span<const std::uint32_t> points,
 /// The same for all points.
 PointsByCluster sort_by_cluster(std::span<const std::uint32_t> labels, std::size_t cluster_count);
 
+/// Points of each cluster.
+std::vector<std::size_t> point_counts(const PointsByCluster& points);
+
 }  // namespace prt::cpca

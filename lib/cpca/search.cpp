@@ -16,6 +16,7 @@
 #include "cpca/search_survey.h"
 #include "cpca/search_trial.h"
 #include "cpca/tighten.h"
+#include "cpca/trim.h"
 
 namespace prt::cpca {
 
@@ -129,11 +130,16 @@ class Search::State {
       seconds_ += made->trial.seconds;
     } else {
       options.checkpoint_stage = kEncoderStage + number;
-      made->encoded = encode(step.is_whole ? Method::fixed : method_, signal_, dimension_, options);
+      made->encoded = encode_step(step, options);
       made->seconds.encoding = stopwatch.seconds();
       made->flops.encoding = made->encoded.flops;
-      if (bound_.is_tight() && energy_ > 0.0 && !step.is_whole)
+      if (bound_.is_tight() && energy_ > 0.0 && step.exact == Exact::none)
         tighten(signal_, point_limit(), step.most_cluster_count, options, made->encoded);
+      // Small clusters of adaptive encodings may have more vectors than chosen.
+      if (bound_.max_bytes) {
+        trim_to_bytes(options.point_weights, bound_.cost, *bound_.max_bytes,
+                      made->encoded.encoding);
+      }
       made->trial.seconds = stopwatch.seconds();
       store_state(options_.checkpoint, {kTrialStage, number}, members);
       if (options_.checkpoint != nullptr) options_.checkpoint->release(options.checkpoint_stage);
@@ -150,11 +156,27 @@ class Search::State {
     last_ = std::move(made);
   }
 
+  Encoded encode_step(const Step& step, const Options& options) const {
+    if (step.exact != Exact::equal_rows) {
+      const Method method = step.exact == Exact::one_cluster ? Method::fixed : method_;
+      return encode(method, signal_, dimension_, options);
+    }
+    Encoded encoded;
+    encoded.encoding = fit(signal_, dimension_, survey_->equal_rows->labels, options);
+    encoded.flops = static_cast<double>(signal_.size());  // of the means
+    return encoded;
+  }
+
   void learn_cost(const Step& step, Made& made) {
     const Choice first{step.first_cluster_count, step.choice.component_count};
-    if (!step.is_whole) {  // which another method may have made
+    if (step.exact == Exact::none) {  // others are made otherwise
       seconds_model_.learn(first, step.is_warm, made.seconds);
       flops_model_.learn(first, step.is_warm, made.flops);
+    }
+    if (step.exact == Exact::equal_rows) {  // it took next to nothing
+      made.alone_flops = equal_rows_work(size_, first);
+      made.alone_seconds = made.alone_flops * made.seconds.encoding / made.flops.encoding;
+      return;
     }
     made.alone_seconds = seconds_model_.alone(first, step.is_warm, made.seconds);
     made.alone_flops = flops_model_.alone(first, step.is_warm, made.flops);

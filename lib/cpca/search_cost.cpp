@@ -11,7 +11,7 @@ namespace {
 /// each iteration, one of five over all clusters.
 constexpr double kFullPasses = 2.0, kNear = 16.0, kPowerSteps = 2.0, kAlternationsEach = 2.0,
                  kFullShare = 0.2;
-/// Of one cluster: nothing moves.
+/// Of one cluster, or exact ones: nothing moves.
 constexpr int kSettled = 3;
 
 /// For each point and coefficient.
@@ -58,6 +58,10 @@ double warm_work(Method method, const Size& size, const Choice& choice, int iter
   double work = level_work(choice, choice.component_count, iterations);
   if (method == Method::adaptive) work += adaptation_work(choice, iterations);
   return static_cast<double>(size.point_count * size.dimension) * work;
+}
+
+double equal_rows_work(const Size& size, const Choice& choice) {
+  return encoding_work(Method::fixed, size, choice, kSettled);
 }
 
 void CostModel::learn(const Choice& choice, bool is_warm, const Effort& effort) {

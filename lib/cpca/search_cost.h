@@ -18,6 +18,9 @@ double encoding_work(Method method, const Size& size, const Choice& choice, int 
 /// The same from clusters of another encoding: all vectors at once.
 double warm_work(Method method, const Size& size, const Choice& choice, int iterations);
 
+/// From seeds that are all of a few different rows: nothing moves any more.
+double equal_rows_work(const Size& size, const Choice& choice);
+
 /// Flops or seconds of a trial.
 struct Effort {
   double encoding = 0.0, tightening = 0.0;

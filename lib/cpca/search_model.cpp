@@ -104,7 +104,7 @@ bool ErrorModel::is_one(const Choice& choice) const {
 
 void ErrorModel::correct(const Column& measured) {
   const Choice last{measured.cluster_count, static_cast<int>(measured.errors.size()) - 1};
-  if (is_one(last)) return correct_alone(last, measured.errors.back());
+  if (is_one(last)) return replace_one(measured);
   shifts_.clear();
   std::vector<double> shifts;
   for (std::size_t i = 0; i < measured.errors.size(); ++i) {
@@ -113,6 +113,20 @@ void ErrorModel::correct(const Column& measured) {
   }
   shifts.push_back(std::abs(shifts.back()) > kMostShift ? 0.0 : shifts.back());  // of the rest
   shifts_ = std::move(shifts);
+}
+
+/// Others go on like it beyond their ends.
+void ErrorModel::replace_one(const Column& measured) {
+  std::vector<double>& logs = columns_[0].errors;
+  const std::size_t count = std::min(measured.errors.size(), logs.size());
+  const double shift = log_of(measured.errors[count - 1]) - logs[count - 1];
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    logs[i] = i < count ? log_of(measured.errors[i]) : logs[i] + shift;
+  }
+  for (std::size_t i = count; i < measured.errors.size(); ++i) {
+    logs.push_back(log_of(measured.errors[i]));
+  }
+  one_shift_ = 0.0;
 }
 
 void ErrorModel::correct(const Choice& choice, double error) {

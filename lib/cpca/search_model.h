@@ -42,6 +42,7 @@ class ErrorModel {
  private:
   /// One cluster, of which a column tells.
   bool is_one(const Choice& choice) const;
+  void replace_one(const Column& measured);
   double column_value(std::size_t column, std::size_t components) const;
   double log_error(const Choice& choice) const;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cpca/encoder.h"
+#include "cpca/equal_rows.h"
 
 namespace prt::cpca {
 
@@ -13,6 +14,7 @@ struct Sample {
   std::vector<float> rows, weights;  ///< empty: all points
   std::span<const float> signal, point_weights;
   std::size_t count = 0, all_count = 0;
+  bool is_all = true;  ///< nothing is left out
   double energy = 0.0;
 
   double points_per_cluster(int cluster_count) const {
@@ -20,8 +22,15 @@ struct Sample {
   }
 };
 
-/// A quarter of the points of a signal, but 128 at least, drawn with the seed of the options, with
-/// their weights; or all, where they are.
+/// A quarter of the points, but 128 at least, where there are as many.
+std::size_t sample_count(std::size_t point_count);
+
+/// So many points of a signal, drawn with the seed of the options, with their weights; or all.
 Sample make_sample(std::span<const float> signal, std::size_t n, const Options& options);
+
+/// One point of each different row, which weighs as much as all that are equal: errors of the root
+/// mean square are those of the whole signal.
+Sample make_sample(std::span<const float> signal, std::size_t n, const Options& options,
+                   const EqualRows& rows);
 
 }  // namespace prt::cpca

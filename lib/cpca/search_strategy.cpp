@@ -62,10 +62,12 @@ Strategy::Strategy(const Bound& bound, double budget, const Size& size, Survey& 
 
 std::optional<Step> Strategy::next(double spent) {
   spent_ = spent;
-  if (has_missed_exact()) return std::nullopt;
+  // Beyond the rounding of floats nothing is more exact.
+  if (!best_ && bound_.max_error && has_tried(exact_choice())) return std::nullopt;
   const std::optional<Choice> choice = choose_next();
   if (!choice) return last_resort();
-  if (bound_.max_error && is_exact(*choice)) return whole_step();
+  const Exact exact = exact_of(*choice);
+  if (exact != Exact::none) return exact_step(exact);
   return Step{.choice = *choice,
               .first_cluster_count = first_of(*choice).cluster_count,
               .most_cluster_count = most_clusters_worthwhile(*choice),
@@ -91,14 +93,7 @@ bool Strategy::learn(const Trial& trial, double alone_flops, const std::optional
     }
     return is_best;
   }
-  if (bound_.max_error) {
-    aim_lower();
-  } else {
-    // Small clusters of adaptive encodings have more vectors than chosen.
-    const double share = static_cast<double>(*bound_.max_bytes) / static_cast<double>(trial.bytes);
-    const double less = 0.98 * share * static_cast<double>(*aim_.max_bytes);
-    aim_.max_bytes = static_cast<std::size_t>(std::max(less, bytes({1, 0})));
-  }
+  aim_lower();
   return false;
 }
 
@@ -153,7 +148,7 @@ Choice Strategy::choose_first() const {
   const double unsure = kUncertain / std::sqrt(static_cast<double>(survey_.sampled_count));
   const double certain = kCertain + (is_tight_ ? 0.0 : unsure);
   const Choice whole = bound_.cost.whole(size_);
-  if (is_exact(whole) && bytes(whole) <= (1.0 + certain) * most_bytes) return whole;
+  if (exact_of(whole) != Exact::none && bytes(whole) <= (1.0 + certain) * most_bytes) return whole;
   Choice first = least;
   for (int i = 0; i <= static_cast<int>(size_.dimension); ++i) {
     const auto choice = choose_clusters(survey_.model, aim_, size_, most_clusters_, i);
@@ -281,9 +276,19 @@ int Strategy::most_clusters_worthwhile(Choice choice) const {
   return choice.cluster_count;
 }
 
-/// One cluster with a vector for every coefficient.
-bool Strategy::is_exact(const Choice& choice) const {
-  return choice == Choice{1, static_cast<int>(size_.dimension)};
+/// One cluster with a vector for every coefficient, where the error is what matters; or one for
+/// each different row.
+Exact Strategy::exact_of(const Choice& choice) const {
+  if (survey_.equal_rows && choice == Choice{survey_.equal_rows->count(), 0}) {
+    return Exact::equal_rows;
+  }
+  const bool is_whole = choice == Choice{1, static_cast<int>(size_.dimension)};
+  return is_whole && bound_.max_error ? Exact::one_cluster : Exact::none;
+}
+
+/// As exact as it gets.
+Choice Strategy::exact_choice() const {
+  return survey_.equal_rows ? Choice{survey_.equal_rows->count(), 0} : bound_.cost.whole(size_);
 }
 
 bool Strategy::has_tried(const Choice& first) const {
@@ -292,22 +297,18 @@ bool Strategy::has_tried(const Choice& first) const {
   });
 }
 
-/// Beyond the rounding of floats nothing is more exact.
-bool Strategy::has_missed_exact() const {
-  return !best_ && bound_.max_error && has_tried({1, static_cast<int>(size_.dimension)});
-}
-
-Step Strategy::whole_step() const {
-  return {.choice = bound_.cost.whole(size_),
-          .first_cluster_count = 1,
-          .most_cluster_count = 1,
-          .is_whole = true};
-}
-
 /// Before the error is said to be out of reach.
 std::optional<Step> Strategy::last_resort() const {
-  if (best_ || !bound_.max_error || has_tried(bound_.cost.whole(size_))) return std::nullopt;
-  return whole_step();
+  if (best_ || !bound_.max_error || has_tried(exact_choice())) return std::nullopt;
+  return exact_step(survey_.equal_rows ? Exact::equal_rows : Exact::one_cluster);
+}
+
+Step Strategy::exact_step(Exact exact) const {
+  const Choice choice = exact == Exact::equal_rows ? exact_choice() : bound_.cost.whole(size_);
+  return {.choice = choice,
+          .first_cluster_count = choice.cluster_count,
+          .most_cluster_count = choice.cluster_count,
+          .exact = exact};
 }
 
 }  // namespace prt::cpca

@@ -11,14 +11,20 @@
 
 namespace prt::cpca {
 
+/// Choices that are exact: of any method the same, and not tightened.
+enum class Exact {
+  none,
+  one_cluster,  ///< with all vectors
+  equal_rows    ///< a cluster for each different row, without vectors
+};
+
 /// The next trial.
 struct Step {
   Choice choice;
   int first_cluster_count = 0;  ///< before it is tightened
   int most_cluster_count = 0;   ///< of tightening
   bool is_warm = false;         ///< from the clusters of the last
-  /// The last resort, one cluster with all vectors: of any method the same, and not tightened.
-  bool is_whole = false;
+  Exact exact = Exact::none;
 };
 
 /// What a survey is asked for, before anything is known: a little less than the bound.
@@ -58,11 +64,11 @@ class Strategy {
   std::optional<Choice> accept(const std::optional<Choice>& choice, double share) const;
   std::optional<Choice> choose_beside() const;
   std::optional<Choice> choose_again() const;
-  bool is_exact(const Choice& choice) const;
+  Exact exact_of(const Choice& choice) const;
+  Choice exact_choice() const;
   bool has_tried(const Choice& first) const;
-  bool has_missed_exact() const;
-  Step whole_step() const;
   std::optional<Step> last_resort() const;
+  Step exact_step(Exact exact) const;
   Choice first_of(Choice choice) const;
   bool is_affordable(const Choice& choice, bool is_warm) const;
   bool is_warm_start(const Choice& choice) const;

@@ -26,7 +26,8 @@ std::optional<Choice> one_within(const ErrorModel& model, Bound bound, const Siz
 
 /// Of more clusters than one.
 void add_columns(const Bound& bound, const Size& size, Surveyor& surveyor, Survey& survey) {
-  const auto most = static_cast<int>(survey.sampled_count / kPointsPerCluster);
+  const int most = survey.equal_rows ? survey.equal_rows->count() - 1
+                                     : static_cast<int>(survey.sampled_count / kPointsPerCluster);
   if (most < 2) return;
   // An eighth of the clusters whose means and vectors take as many bytes as the weights of points:
   // about the fewest that are chosen, as encodings of few clusters take the least time.
@@ -69,15 +70,21 @@ int most_clusters(std::size_t point_count) {
 Survey make_survey(const Bound& bound, Method method, std::span<const float> signal, int dimension,
                    const Options& options) {
   const auto n = static_cast<std::size_t>(dimension);
-  const Sample sample = make_sample(signal, n, options);
-  const Size size{sample.all_count, n};
-  Surveyor surveyor(bound, method, sample, dimension, options);
+  const Size size{signal.size() / n, n};
   Survey survey;
-  survey.sampled_count = sample.count;
+  survey.sampled_count = sample_count(size.point_count);
+  const auto most_rows =
+      std::min(survey.sampled_count - 1, static_cast<std::size_t>(most_clusters(size.point_count)));
+  if (bound.norm == Norm::rmse) survey.equal_rows = find_equal_rows(signal, n, most_rows);
+  if (survey.equal_rows) survey.sampled_count = size.point_count;
+  const Sample sample = survey.equal_rows ? make_sample(signal, n, options, *survey.equal_rows)
+                                          : make_sample(signal, n, options);
+  Surveyor surveyor(bound, method, sample, dimension, options);
   // Nothing is smaller.
   const Column mean = surveyor.encode_one_of_all(0, signal, options.point_weights);
   const bool is_enough = surveyor.is_enough(mean.errors[0]);
   const bool has_vectors = bound.cost.whole(size).component_count > 0;
+  if (survey.equal_rows) survey.model.add(surveyor.encode_rows());
   survey.model.add(is_enough || !has_vectors ? mean : surveyor.encode_one());
   const std::optional<Choice> one = one_within(survey.model, bound, size);
   if (one && surveyor.can_afford_all(*one)) {

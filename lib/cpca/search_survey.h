@@ -9,8 +9,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
+#include "cpca/equal_rows.h"
 #include "cpca/method.h"
 #include "cpca/search_model.h"
 
@@ -18,15 +20,18 @@ namespace prt::cpca {
 
 struct Survey {
   ErrorModel model;
-  std::size_t sampled_count = 0;  ///< points
-  double flops = 0.0;             ///< as Encoded::flops
+  std::size_t sampled_count = 0;  ///< points that it tells of
+  /// When there are few: the survey is of them, and clusters of them are exact.
+  std::optional<EqualRows> equal_rows;
+  double flops = 0.0;  ///< as Encoded::flops
 };
 
 /// Encodes one cluster, without vectors of all points, as nothing is smaller, and then, unless that
 /// is enough or takes less than others promise, with numbers of clusters about those that will be
 /// chosen, as far as the first of them tell. Static encodings tell the errors of all numbers of
 /// vectors at once, as every vector takes its share from the error of a point; iterative ones make
-/// them one after the other.
+/// them one after the other. Of signals with fewer different rows than the sample would have
+/// points, these are the sample, unless errors are the largest of a point.
 Survey make_survey(const Bound& bound, Method method, std::span<const float> signal, int dimension,
                    const Options& options);
 

@@ -65,6 +65,11 @@ Column Surveyor::encode_one() {
   });
 }
 
+Column Surveyor::encode_rows() {
+  const auto count = static_cast<int>(sample_.count);
+  return keep(count, [&] { return Column{count, {0.0}}; });
+}
+
 Column Surveyor::encode(int cluster_count) {
   set_counts(cluster_count, most_components(cluster_count));
   const Column column = keep(cluster_count, [&] {
@@ -76,7 +81,7 @@ Column Surveyor::encode(int cluster_count) {
 
 bool Surveyor::can_afford_all(const Choice& one) const {
   const bool is_small = size_.point_count <= kPointsPerCoefficient * size_.dimension;
-  return is_small && sample_.count < size_.point_count &&
+  return is_small && !sample_.is_all &&
          encoding_work(Method::fixed, size_, one, iterations_) <=
              kShareOfOne * encoding_work(method_, size_, one, iterations_);
 }
@@ -144,7 +149,7 @@ double Surveyor::work(const Choice& last) const {
 int Surveyor::most_components(int cluster_count) const {
   int most = bound_.cost.whole(size_).component_count;
   const double points = sample_.points_per_cluster(cluster_count);
-  if (sample_.count < sample_.all_count) {
+  if (!sample_.is_all) {
     most = std::min(most, static_cast<int>(points / kPointsPerVector) - 1);
   }
   while (most > 0 && bound_.cost.bytes(size_, {cluster_count, most}) > most_bytes_) --most;
@@ -153,7 +158,7 @@ int Surveyor::most_components(int cluster_count) const {
 
 /// From errors of the sample to those of the signal.
 double Surveyor::correction(std::size_t components) const {
-  if (sample_.count == sample_.all_count) return 1.0;
+  if (sample_.is_all) return 1.0;
   const auto taken =
       static_cast<double>((components + 1) * static_cast<std::size_t>(options_.cluster_count));
   return std::sqrt((1.0 - taken / static_cast<double>(sample_.all_count)) /
