@@ -1,6 +1,7 @@
 """What prt-compress takes beside the program: encoding, searching within an error, and within bytes
 that hold thousands of clusters, at most 1.5 times the signal."""
 
+import array
 import os
 import random
 import struct
@@ -29,18 +30,18 @@ class Memory(ToolTest):
         cls.program = peak_bytes("prt-compress", "--version")
 
     def write_signal(self):
-        """120 MB, block by block, so that this process stays small."""
+        """120 MB of rows that all differ, block by block, so that this process stays small."""
         path = self.folder / "x.npy"
         header = (f"{{'descr': '<f4', 'fortran_order': False, "
                   f"'shape': ({POINTS}, {COEFFICIENTS}), }}").ljust(117) + "\n"
         draw = random.Random(1).gauss
-        block = struct.pack(f"<{BLOCK * COEFFICIENTS}f",
-                            *(draw(0, 1 / (1 + i)) for _ in range(BLOCK)
-                              for i in range(COEFFICIENTS)))
+        block = array.array("f", (draw(0, 1 / (1 + i)) for _ in range(BLOCK)
+                                  for i in range(COEFFICIENTS)))
         with open(path, "wb") as file:
             file.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode())
             for _ in range(POINTS // BLOCK):
-                file.write(block)
+                block[::COEFFICIENTS] = array.array("f", (x + 0.01 for x in block[::COEFFICIENTS]))
+                file.write(block.tobytes())
         return path
 
     def test_encoding_and_search_take_one_and_a_half_signals(self):

@@ -13,7 +13,7 @@
 namespace prt::cpca {
 namespace {
 
-constexpr int kSearchDimension = 40;
+constexpr int kExactDimension = 40;
 
 /// Every point is one of a few rows, drawn at random.
 std::vector<float> repeat_rows(int row_count, std::size_t point_count, int dimension) {
@@ -104,17 +104,17 @@ TEST(EncodeWithin, TakesFewerClustersThanRowsWhereErrorsMayBe) {
 // Noise in all directions, beside which a few clusters with many vectors are no smaller.
 TEST(EncodeWithin, TakesNoMoreThanOneClusterWithAllVectors) {
   constexpr std::size_t kPointCount = 1500;
-  std::vector<float> signal = random_values(kPointCount * kSearchDimension, 3);
-  const auto surface = make_surface(kPointCount, kSearchDimension);
+  std::vector<float> signal = random_values(kPointCount * kExactDimension, 3);
+  const auto surface = make_surface(kPointCount, kExactDimension);
   for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = surface[i] + 0.05f * signal[i];
   for (const Method method : {Method::fixed, Method::iterative}) {
     for (const double max_error : {1e-3, 1e-6}) {
       const Bound bound{.max_error = max_error, .max_bytes = {}};
       const Encoding found =
-          encode_within(bound, method, signal, kSearchDimension, {}).encoded.encoding;
+          encode_within(bound, method, signal, kExactDimension, {}).encoded.encoding;
       EXPECT_LE(relative_error(found, signal, Norm::rmse), max_error);
       EXPECT_LE(bound.cost.bytes(found),
-                bound.cost.bytes({kPointCount, kSearchDimension}, {1, kSearchDimension}));
+                bound.cost.bytes({kPointCount, kExactDimension}, {1, kExactDimension}));
     }
   }
 }
