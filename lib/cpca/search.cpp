@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/log.h"
 #include "core/stopwatch.h"
 #include "cpca/error_limits.h"
 #include "cpca/fit.h"
@@ -85,6 +86,10 @@ class Search::State {
     const Stopwatch stopwatch;
     survey_ = make_survey(first_aim(bound_), method_, signal_, dimension_, options_);
     flops_ = survey_->flops;
+    if (survey_->equal_rows) {
+      log::info("{} points have {} different rows: {} clusters are exact", size_.point_count,
+                survey_->equal_rows->count(), survey_->equal_rows->count());
+    }
     stages_.push_back({"survey", stopwatch.seconds()});
   }
 

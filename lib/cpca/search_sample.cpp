@@ -59,6 +59,7 @@ Sample make_sample(std::span<const float> signal, std::size_t n, const Options& 
   sample.rows = copy_rows(signal, n, rows.first);
   sample.all_count = rows.labels.size();
   sample.count = rows.first.size();
+  sample.is_of_rows = true;
   std::vector<double> sums(sample.count);
   for (std::size_t p = 0; p < sample.all_count; ++p) {
     sums[rows.labels[p]] += options.point_weights.empty() ? 1.0 : double{options.point_weights[p]};

@@ -14,7 +14,8 @@ struct Sample {
   std::vector<float> rows, weights;  ///< empty: all points
   std::span<const float> signal, point_weights;
   std::size_t count = 0, all_count = 0;
-  bool is_all = true;  ///< nothing is left out
+  bool is_all = true;       ///< nothing is left out
+  bool is_of_rows = false;  ///< one of each different row
   double energy = 0.0;
 
   double points_per_cluster(int cluster_count) const {

@@ -110,7 +110,14 @@ double Strategy::bytes(const Choice& choice) const {
   return static_cast<double>(bound_.cost.bytes(size_, choice));
 }
 
-Choice Strategy::choose_aim() const { return choose(survey_.model, aim_, size_, most_clusters_); }
+/// Of different rows no prediction is needed.
+Choice Strategy::choose_aim() const {
+  const Choice least = choose(survey_.model, aim_, size_, most_clusters_);
+  if (!survey_.equal_rows || bytes(exact_choice()) > static_cast<double>(aim_.most_bytes(size_)))
+    return least;
+  const bool is_within = survey_.model.error(least) <= aim_.max_error.value_or(kExact);
+  return is_within && bytes(least) < bytes(exact_choice()) ? least : exact_choice();
+}
 
 /// Of encodings with the same number of vectors tighten() leaves the clusters that they need.
 bool Strategy::is_known(const Choice& choice) const {
@@ -142,7 +149,9 @@ std::optional<Choice> Strategy::choose_next() {
 /// cluster also where it is somewhat larger, as its error is known.
 Choice Strategy::choose_first() const {
   const Choice least = choose_aim();
-  if (!bound_.max_error || least == Choice{1, 0}) return least;
+  if (!bound_.max_error || least == Choice{1, 0} || exact_of(least) == Exact::equal_rows) {
+    return least;
+  }
   const auto work = [&](const Choice& choice) { return flops_.work(choice, false); };
   const double most_bytes = bytes(least);
   const double unsure = kUncertain / std::sqrt(static_cast<double>(survey_.sampled_count));
@@ -244,6 +253,7 @@ Choice Strategy::first_of(Choice choice) const {
 
 /// Whether the search is still worth its result, be it this one or the best so far.
 bool Strategy::is_affordable(const Choice& choice, bool is_warm) const {
+  if (exact_of(choice) == Exact::equal_rows) return true;
   const Choice first = first_of(choice);
   const double doubt = is_tight_ ? kTightDoubt : 1.0;
   const bool is_told = is_warm || best_trial().is_warm;

@@ -48,7 +48,9 @@ void add_columns(const Bound& bound, const Size& size, Surveyor& surveyor, Surve
     const int count = wanted.cluster_count;
     const bool is_more = count > high || (column == 1 && low == least);
     int next = 0;
-    if (is_more && high < most && (column == 1 || count > high + high / 3)) {
+    // As clusters become as many as rows, errors fall faster than anything before tells.
+    const int near = survey.equal_rows ? high : high + high / 3;
+    if (is_more && high < most && (column == 1 || count > near)) {
       next = high = std::min(most, high * kStep);
     } else if (!is_more && low > least && (column == 1 || count < low - low / 4)) {
       next = low = std::max(least, low / kStep);
@@ -84,7 +86,6 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
   const Column mean = surveyor.encode_one_of_all(0, signal, options.point_weights);
   const bool is_enough = surveyor.is_enough(mean.errors[0]);
   const bool has_vectors = bound.cost.whole(size).component_count > 0;
-  if (survey.equal_rows) survey.model.add(surveyor.encode_rows());
   survey.model.add(is_enough || !has_vectors ? mean : surveyor.encode_one());
   const std::optional<Choice> one = one_within(survey.model, bound, size);
   if (one && surveyor.can_afford_all(*one)) {

@@ -41,6 +41,10 @@ Surveyor::Surveyor(const Bound& bound, Method method, const Sample& sample, int 
   options_.iterations = std::min(options.iterations, kIterations);
   options_.checkpoint = nullptr;  // whole columns are kept
   most_bytes_ = bound.most_bytes(size_);
+  if (sample.is_of_rows) {  // clusters of these are exact
+    most_bytes_ =
+        std::min(most_bytes_, bound.cost.bytes(size_, {static_cast<int>(sample.count), 0}));
+  }
 }
 
 Column Surveyor::encode_one_of_all(int component_count, std::span<const float> signal,
@@ -63,11 +67,6 @@ Column Surveyor::encode_one() {
     for (std::size_t i = 0; i < column.errors.size(); ++i) column.errors[i] *= correction(i);
     return column;
   });
-}
-
-Column Surveyor::encode_rows() {
-  const auto count = static_cast<int>(sample_.count);
-  return keep(count, [&] { return Column{count, {0.0}}; });
 }
 
 Column Surveyor::encode(int cluster_count) {

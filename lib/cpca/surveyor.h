@@ -26,8 +26,6 @@ class Surveyor {
                            std::span<const float> weights);
   /// One cluster with as many vectors as are within the bound, or bring anything.
   Column encode_one();
-  /// Of clusters of equal rows, which the sample has one of each.
-  Column encode_rows();
   Column encode(int cluster_count);
 
   /// Whether all points can be looked at for that choice: the fewer there are, the less a sample
