@@ -54,7 +54,7 @@ class Paths(ToolTest):
                      out)
         image = self.write("map.json", "not read")
         self.refused(WRONG_USAGE, "an input", "prt-light", image, "-o", image)
-        self.refused(FAILED, "folder", "prt-transfer", self.quad, "-o", out, "--report",
+        self.refused(FAILED, "Create .*missing first", "prt-transfer", self.quad, "-o", out, "--report",
                      self.folder / "missing" / "r.json")
         self.done("prt-import", self.quad, "-o", self.quad)
 

@@ -70,7 +70,7 @@ class Resume(ToolTest):
                   "--clusters", 64, "--components", 3)
         resumed = self.continues((100, 600_000), encode, r"encoded with \d of 3 components",
                                  "resumed_iteration_count")
-        self.assertGreater(resumed, 20)
+        self.assertGreaterEqual(resumed, 20)  # one level at least, whenever it was killed
 
     def test_a_reference_picture(self):
         light = self.folder / "light.json"
