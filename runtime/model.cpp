@@ -49,18 +49,14 @@ void add_frames(const mesh::Scene& scene, Model& model) {
     }
 }
 
-void check_belongs_to(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
-                      const std::filesystem::path& glb) {
-  if (transfer.mesh_hash.empty()) return;  // optional in the extension
-  const std::string hash = mesh::mesh_hash(scene);
-  if (transfer.mesh_hash == hash) return;
-  throw_bad_input("the precomputed transfer belongs to another mesh",
-                  {.file = glb.string(),
-                   .element = "meshHash",
-                   .found = transfer.mesh_hash,
-                   .expected = hash,
-                   .advice = "Geometry or colours were changed after baking: run prt-transfer and "
-                             "prt-compress again."});
+/// As many vertices can be drawn, whatever they are: a hash is for people.
+void warn_of_another_mesh(const gltf::PrecomputedTransfer& transfer, const mesh::Scene& scene,
+                          const std::filesystem::path& glb) {
+  if (mesh::match_mesh_hash(transfer.mesh_hash, scene) != mesh::HashMatch::different) return;
+  log::warning(
+      "{}: the precomputed transfer was baked for other geometry or colours (meshHash {}, the "
+      "file's is {}), and may look wrong. Run prt-transfer and prt-compress again",
+      glb.string(), transfer.mesh_hash, mesh::mesh_hash(scene));
 }
 
 /// Transfer has one albedo a vertex.
@@ -110,7 +106,7 @@ Model load_model(const std::filesystem::path& glb, const std::filesystem::path& 
   const gltf::Document document = gltf::Document::load(glb);
   const mesh::Scene scene = document.scene();
   std::optional<gltf::PrecomputedTransfer> compressed = document.precomputed_transfer();
-  if (compressed) check_belongs_to(*compressed, scene, glb);
+  if (compressed) warn_of_another_mesh(*compressed, scene, glb);
   warn_of_textures(scene, glb);
   std::optional<signal::TransferSignal> signal;
   if (!transfer.empty()) {

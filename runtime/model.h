@@ -38,7 +38,8 @@ Model make_model(const mesh::Scene& scene, std::optional<gltf::PrecomputedTransf
                  std::optional<signal::TransferSignal> signal);
 
 /// Reads a .glb and, unless empty, the transfer file of its mesh. Throws Error (bad_input) when
-/// there is no transfer in either, or the transfer belongs to another mesh.
+/// there is no transfer in either, or the transfer file belongs to another mesh. Warns when the
+/// model's own transfer was baked for other geometry or colours.
 Model load_model(const std::filesystem::path& glb, const std::filesystem::path& transfer = {});
 
 /// Root mean square error of each vertex' compressed transfer, relative to the root mean square

@@ -23,7 +23,7 @@ struct PrecomputedTransfer {
   int row_count = 1;
   int channel_count = 1;
   std::string brdf = "lambert";
-  std::string mesh_hash;
+  std::string mesh_hash;  ///< mesh::mesh_hash of what it was baked for; empty: not known
   cpca::Encoding encoding;
   /// Weights are numbers of the format, as cpca::convert_weights makes them.
   cpca::WeightFormat weight_format = cpca::WeightFormat::float32;

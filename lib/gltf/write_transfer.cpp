@@ -151,10 +151,10 @@ Json make_header(State& state, const PrecomputedTransfer& transfer) {
             {"rowCount", transfer.row_count},
             {"channelCount", transfer.channel_count},
             {"brdf", transfer.brdf},
-            {"meshHash", transfer.mesh_hash},
             {"clusterCount", encoding.cluster_count},
             {"componentCount", encoding.component_count},
             {"means", add_floats(state, "SCALAR", encoding.means, 0)}};
+  if (!transfer.mesh_hash.empty()) json["meshHash"] = transfer.mesh_hash;
   if (vector_count(encoding) > 0) {
     json["bases"] = add_floats(state, "SCALAR", packed_bases(encoding), 0);
   }

@@ -103,12 +103,11 @@ void check_encoding(const gltf::PrecomputedTransfer& transfer, const mesh::Scene
     inspection.error(kTransferExtension, fmt::format("holds {} points, the scene has {} vertices",
                                                      encoding.point_count, scene.vertex_count()));
   }
-  const std::string hash = mesh::mesh_hash(scene);
-  if (!transfer.mesh_hash.empty() && transfer.mesh_hash != hash) {
-    inspection.error(
+  if (mesh::match_mesh_hash(transfer.mesh_hash, scene) == mesh::HashMatch::different) {
+    inspection.warning(
         kTransferExtension,
-        fmt::format("was baked for another mesh or other colours: hash {}, the file's is {}",
-                    transfer.mesh_hash, hash));
+        fmt::format("was baked for other geometry or colours: hash {}, the file's is {}",
+                    transfer.mesh_hash, mesh::mesh_hash(scene)));
   }
   for (const auto& [name, values] : {std::pair{"means", &encoding.means},
                                      {"bases", &encoding.bases},

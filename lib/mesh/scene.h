@@ -89,8 +89,17 @@ MetallicRoughness metallic_roughness_at_point(const Scene& scene, const Primitiv
 
 /// Content hash of what a transfer, diffuse or glossy, is baked from and belongs to: positions,
 /// normals, tangents, indices and what the vertices reflect by, of all primitives. Of textures,
-/// what lies between the vertices is left out.
+/// what lies between the vertices is left out. "2:" and 32 hexadecimal digits: the number before
+/// the colon is the version of the recipe, and rises with every change of what is hashed or how.
 std::string mesh_hash(const Scene& scene);
+
+enum class HashMatch {
+  same,
+  different,  ///< geometry or reflection changed
+  unknown,    ///< no hash, or one by a recipe that is not mesh_hash's: nothing can be said
+};
+/// Whether `hash`, as a file holds it, is that of the scene.
+HashMatch match_mesh_hash(const std::string& hash, const Scene& scene);
 
 /// Content hash of all that light meets in the scene: that, and the textures between the vertices.
 std::string scene_hash(const Scene& scene);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "signal/transfer_signal.h"
 
 namespace prt::signal {
@@ -28,8 +29,16 @@ void check_belongs_to(const TransferSignal& signal, const mesh::Scene& scene,
            fmt::format("{} vertices", signal.blocks[i].vertex_count),
            fmt::format("{}", vertex_count));
   }
-  const std::string hash = mesh::mesh_hash(scene);
-  if (signal.mesh_hash != hash) reject("mesh hash", signal.mesh_hash, hash);
+  const mesh::HashMatch match = mesh::match_mesh_hash(signal.mesh_hash, scene);
+  if (match == mesh::HashMatch::different) {
+    reject("mesh hash", signal.mesh_hash, mesh::mesh_hash(scene));
+  }
+  if (match == mesh::HashMatch::unknown && !signal.mesh_hash.empty()) {
+    log::warning(
+        "{}: its mesh hash is by another version of prtkit: the vertex counts fit, but not whether "
+        "geometry or colours were changed after baking can be told",
+        signal_path.string());
+  }
 }
 
 }  // namespace prt::signal

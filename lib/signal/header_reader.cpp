@@ -111,7 +111,9 @@ void HeaderReader::read_attributes(TransferSignal& signal) const {
   signal.seed = parse_count("prtkit_seed", attribute<Imf::StringAttribute>("prtkit_seed"));
   signal.brdf = attribute<Imf::StringAttribute>("prtkit_brdf");
   signal.tool_version = attribute<Imf::StringAttribute>("prtkit_tool_version");
-  signal.mesh_hash = attribute<Imf::StringAttribute>("prtkit_mesh_hash");
+  if (header_.find("prtkit_mesh_hash") != header_.end()) {  // other programs need not know how
+    signal.mesh_hash = attribute<Imf::StringAttribute>("prtkit_mesh_hash");
+  }
   read_blocks(signal);
 }
 

@@ -27,7 +27,7 @@ struct TransferSignal {
   int ray_count = 0;
   int bounce_count = 0;
   std::string tool_version;
-  std::string mesh_hash;  ///< mesh::mesh_hash of the scene it was computed for
+  std::string mesh_hash;  ///< mesh::mesh_hash of the scene it was computed for; empty: not known
 
   struct Block {
     std::string name;  ///< of the primitive
@@ -59,7 +59,9 @@ void write_transfer(const std::filesystem::path& path, const TransferSignal& sig
 TransferSignal read_transfer(const std::filesystem::path& path,
                              std::size_t max_bytes = std::size_t{16} << 30);
 
-/// Throws Error (bad_input) when the signal was computed for another mesh.
+/// Throws Error (bad_input) when the signal was computed for another mesh: when vertex counts or
+/// hashes differ. Warns of a hash that cannot be compared (mesh::match_mesh_hash); without one only
+/// the counts are checked.
 void check_belongs_to(const TransferSignal& signal, const mesh::Scene& scene,
                       const std::filesystem::path& signal_path);
 

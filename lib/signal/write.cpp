@@ -39,7 +39,7 @@ Imf::Header make_header(const TransferSignal& signal, int width, int height) {
   add_string("prtkit_seed", std::to_string(signal.seed));
   add_string("prtkit_brdf", signal.brdf);
   add_string("prtkit_tool_version", signal.tool_version);
-  add_string("prtkit_mesh_hash", signal.mesh_hash);
+  if (!signal.mesh_hash.empty()) add_string("prtkit_mesh_hash", signal.mesh_hash);
   Imf::StringVector names, counts;
   for (const TransferSignal::Block& block : signal.blocks) {
     names.push_back(block.name);

@@ -185,13 +185,21 @@ class BadBake(ToolTest):
         document["materials"] = [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}]
         document["meshes"][0]["primitives"][0]["material"] = 0
         painted = self.write("painted.prt.glb", glb(document, binary))
-        self.refused(BAD_INPUT, "colours", "prt-render", painted, "-o", self.folder / "a.png")
-        report = self.folder / "report.json"
-        result = run("prt-inspect", painted, "--json", "--report", report)
+        drawn = self.done("prt-render", painted, "-o", self.folder / "a.png", "--size", "32x32")
+        self.assertIn("baked for other geometry or colours", drawn.stderr)
+        shown = json.loads(self.done("prt-inspect", painted, "--json").stdout)
+        self.assertRegex(str(shown["findings"]), "warning.*colours")
+
+    def test_report_of_a_model_that_is_not_valid(self):
+        self.done(*self.compress("--clusters", 1, "--components", 1))
+        document, binary = read_glb(self.baked)
+        document["extensions"]["PRTKIT_precomputed_transfer"]["transfers"][0]["clusterCount"] = 0
+        bad, report = self.write("bad.prt.glb", glb(document, binary)), self.folder / "report.json"
+        result = run("prt-inspect", bad, "--json", "--report", report)
         self.assertEqual(result.returncode, BAD_INPUT)
-        self.assertRegex(result.stderr, "painted.*not valid")
+        self.assertRegex(result.stderr, "bad.*not valid")
         self.assertEqual(self.load(report)["result"], json.loads(result.stdout))
-        self.assertRegex(str(self.load(report)["result"]["findings"]), "colours")
+        self.assertRegex(str(self.load(report)["result"]["findings"]), "clusterCount")
 
     def test_cluster_counts(self):
         self.refused(WRONG_USAGE, "clusters", *self.compress("--clusters", 0))

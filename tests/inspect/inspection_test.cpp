@@ -67,16 +67,15 @@ TEST_F(InspectionTest, HalfFloatsTakeHalfTheRoomAndThoseThatAreNoNumbersAreFindi
   }
 }
 
-TEST_F(InspectionTest, FindsEveryFaultOfABakedModel) {
+TEST_F(InspectionTest, FindsWhatIsOddInABakedModel) {
   gltf::PrecomputedTransfer bad = transfer();
-  bad.mesh_hash = "of another mesh";
+  bad.mesh_hash.back() = bad.mesh_hash.back() == '0' ? '1' : '0';
   bad.encoding.bases[0] = 3.0f;
   std::fill(bad.encoding.cluster_of_point.begin(), bad.encoding.cluster_of_point.end(), 0u);
   const Inspection inspection = inspect_file(write_baked(bad));
-  EXPECT_FALSE(inspection.valid());
-  EXPECT_EQ(inspection.json["valid"], false);
+  EXPECT_TRUE(inspection.valid());  // it can be drawn
   const std::string text = to_text(inspection.json);
-  for (const char* part : {"another mesh", "not orthonormal", "1 have no vertex"}) {
+  for (const char* part : {"other geometry or colours", "not orthonormal", "1 have no vertex"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
   EXPECT_EQ(inspection.json["findings"].size(), 3u);

@@ -119,6 +119,41 @@ TEST_F(ForeignTransferFile, ReadsWhatAnotherProgramWrote) {
   EXPECT_EQ(read_transfer(path()).vertex_count(), 4u);
 }
 
+TEST_F(ForeignTransferFile, BelongsWhereCountsFitUnlessAHashThatCanBeComparedSaysNo) {
+  mesh::Scene scene;
+  mesh::Primitive& primitive = scene.primitives.emplace_back();
+  primitive.mesh.positions.assign(4, Vec3(0.0f));
+  primitive.mesh.normals.assign(4, Vec3(0.0f, 0.0f, 1.0f));
+  const auto said_with_hash = [&](const char* hash) {
+    write_stranger(path(), [&](Imf::Header& header) {
+      remove(header, "prtkit_mesh_hash");
+      if (hash) header.insert("prtkit_mesh_hash", Imf::StringAttribute(hash));
+    });
+    testing::internal::CaptureStderr();
+    std::string error;
+    try {
+      check_belongs_to(read_transfer(path()), scene, path());
+    } catch (const Error& caught) {
+      error = caught.what();
+    }
+    return error + testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(said_with_hash(nullptr), "");
+  EXPECT_EQ(said_with_hash(mesh::mesh_hash(scene).c_str()), "");
+  expect_contains(said_with_hash("3df243d100d3cbc776a45bc90316d2fe"), "another version of prtkit");
+  expect_contains(said_with_hash("2:00000000000000000000000000000000"), "belongs to another mesh");
+  primitive.mesh.positions.emplace_back(0.0f);
+  expect_contains(said_with_hash(nullptr), "belongs to another mesh");
+}
+
+TEST_F(ForeignTransferFile, KeepsToHavingNoHash) {
+  TransferSignal signal = make_signal(1, 1, 1, {4});
+  signal.mesh_hash.clear();
+  write_transfer(path(), signal);
+  EXPECT_EQ(read_transfer(path()).mesh_hash, "");
+  EXPECT_EQ(read_text_file(path()).find("prtkit_mesh_hash"), std::string::npos);
+}
+
 TEST_F(ForeignTransferFile, RefusesHeadersThatDoNotFit) {
   using Header = Imf::Header;
   const auto set_int = [](const char* name, int value) {
