@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "gltf/document.h"
 #include "gltf/precomputed_transfer.h"
@@ -10,6 +11,8 @@
 #include "inspect/schema.h"
 #include "inspect/statistics.h"
 #include "mesh/scene.h"
+#include "sh/basis.h"
+#include "sh/radiance_metric.h"
 
 namespace prt::inspect {
 
@@ -44,17 +47,17 @@ Json describe(const mesh::Scene& scene, const mesh::Primitive& primitive) {
   return json;
 }
 
-// Vectors of a cluster are orthonormal, with weights other than floats orthogonal; a cluster of
-// fewer points than components pads with zeros.
-double orthonormality_error(const gltf::PrecomputedTransfer& transfer, int cluster) {
-  const cpca::Encoding& encoding = transfer.encoding;
-  const bool unit_length = transfer.weight_format == cpca::WeightFormat::float32;
+// Vectors of a cluster, in coordinates in which they should be orthonormal, with weights other than
+// floats orthogonal; a cluster of fewer points than components pads with zeros.
+double orthonormality_error(std::span<const float> vectors, std::size_t dimension, int count,
+                            bool unit_length) {
   const auto dot = [&](int i, int j) {
-    const auto a = encoding.basis(cluster, i), b = encoding.basis(cluster, j);
+    const auto a = vectors.subspan(static_cast<std::size_t>(i) * dimension, dimension);
+    const auto b = vectors.subspan(static_cast<std::size_t>(j) * dimension, dimension);
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
   };
   double worst = 0.0;
-  for (int i = 0; i < encoding.component_count_of(cluster); ++i) {
+  for (int i = 0; i < count; ++i) {
     const double square = dot(i, i);
     if (square == 0.0) continue;
     if (unit_length) worst = std::max(worst, std::abs(square - 1.0));
@@ -63,6 +66,23 @@ double orthonormality_error(const gltf::PrecomputedTransfer& transfer, int clust
       if (product != 0.0)
         worst = std::max(worst, std::abs(product) / std::sqrt(square * dot(j, j)));
     }
+  }
+  return worst;
+}
+
+double orthonormality_error(const gltf::PrecomputedTransfer& transfer) {
+  const cpca::Encoding& encoding = transfer.encoding;
+  std::vector<float> bases = encoding.bases;
+  sh::RadianceMetric(transfer.row_count, sh::row_size(transfer.band_count)).apply(bases);
+  const bool unit_length = transfer.weight_format == cpca::WeightFormat::float32;
+  const auto dimension = static_cast<std::size_t>(encoding.dimension);
+  const std::size_t cluster_size = static_cast<std::size_t>(encoding.component_count) * dimension;
+  double worst = 0.0;
+  for (int k = 0; k < encoding.cluster_count; ++k) {
+    const auto vectors =
+        std::span(bases).subspan(static_cast<std::size_t>(k) * cluster_size, cluster_size);
+    worst = std::max(worst, orthonormality_error(vectors, dimension, encoding.component_count_of(k),
+                                                 unit_length));
   }
   return worst;
 }
@@ -122,10 +142,7 @@ void inspect_precomputed_transfer(const gltf::PrecomputedTransfer& transfer,
   const cpca::Encoding& encoding = transfer.encoding;
   const std::vector<double> sizes = cluster_sizes(encoding);
   const auto unused = std::count(sizes.begin(), sizes.end(), 0.0);
-  double orthonormality = 0.0;
-  for (int k = 0; k < encoding.cluster_count; ++k) {
-    orthonormality = std::max(orthonormality, orthonormality_error(transfer, k));
-  }
+  const double orthonormality = orthonormality_error(transfer);
   const Json bytes = describe_bytes(transfer);
   inspection.json["precomputed_transfer"] = {
       {"band_count", transfer.band_count},

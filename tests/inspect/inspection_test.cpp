@@ -6,11 +6,14 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/random.h"
+#include "cpca/encoder.h"
 #include "gltf/document.h"
 #include "image/image.h"
 #include "sample_files.h"
 #include "sh/light.h"
 #include "signal/npz.h"
+#include "sh/radiance_metric.h"
 
 namespace prt::inspect {
 namespace {
@@ -79,6 +82,27 @@ TEST_F(InspectionTest, FindsWhatIsOddInABakedModel) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
   EXPECT_EQ(inspection.json["findings"].size(), 3u);
+}
+
+TEST_F(InspectionTest, VectorsOfTransferMatricesAreOrthonormalAsExitRadiance) {
+  gltf::PrecomputedTransfer glossy = transfer();
+  glossy.row_count = 24;
+  const sh::RadianceMetric metric(24, 4);
+  std::vector<float> values(8 * 24 * 4);
+  Pcg32 random(5);
+  for (float& value : values) value = random.uniform() - 0.5f;
+  metric.apply(values);
+  cpca::Options options;
+  options.cluster_count = 1;
+  options.component_count = 3;
+  glossy.encoding = cpca::encode_static(values, 24 * 4, options).encoding;
+  const Inspection plain = inspect_file(write_baked(glossy));  // orthonormal as numbers
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "not orthonormal", to_text(plain.json));
+  metric.undo(glossy.encoding.means);
+  metric.undo(glossy.encoding.bases);
+  const Inspection inspection = inspect_file(write_baked(glossy));
+  EXPECT_TRUE(inspection.findings.empty()) << to_text(inspection.json);
+  EXPECT_LT(inspection.json["precomputed_transfer"]["orthonormality_error"], 1e-4);
 }
 
 TEST_F(InspectionTest, ExamplesOfTheSpecificationAreValid) {
