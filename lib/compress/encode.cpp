@@ -8,6 +8,7 @@
 #include "core/checkpoint.h"
 #include "core/hash.h"
 #include "core/log.h"
+#include "cpca/empty_clusters.h"
 #include "cpca/fit.h"
 #include "gltf/precomputed_transfer.h"
 
@@ -59,10 +60,16 @@ Result encode(const Job& job, const Input& input, Report& report) {
   cpca::Options options = make_options(job, input);
   Checkpoint checkpoint(job.checkpoint, checkpoint_key(job, input, options));
   options.checkpoint = &checkpoint;
-  if (job.bound.max_error || job.bound.max_bytes) return search(job, input, options, report);
-  return {.encoded = cpca::encode(method_of(job), input.transfer.values,
-                                  static_cast<int>(input.dimension), options),
-          .weights = job.storage.weights};
+  Result result;
+  if (job.bound.max_error || job.bound.max_bytes) {
+    result = search(job, input, options, report);
+  } else {
+    result = {.encoded = cpca::encode(method_of(job), input.transfer.values,
+                                      static_cast<int>(input.dimension), options),
+              .weights = job.storage.weights};
+  }
+  cpca::drop_empty_clusters(result.encoded.encoding);
+  return result;
 }
 
 cpca::Storage store(const Job& job, const Input& input, Result& result, Report& report) {

@@ -18,7 +18,8 @@ struct Result {
   double reserve = 0.0;                       ///< share of max_error² that their rounding may take
 };
 
-/// Encodes a scaled signal with the counts of the job, or searches. Of a model the search measures
+/// Encodes a scaled signal with the counts of the job, or searches; clusters without points are
+/// left out. Of a model the search measures
 /// errors with weights as they will be stored: unless the job says how, as integers of 8 bits, and
 /// again as finer ones while what rounding adds is more than they might cost; of these the best is
 /// taken. Adds to the report what docs/tools/prt-compress.md says of searches. Throws Error

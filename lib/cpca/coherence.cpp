@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "cpca/empty_clusters.h"
 #include "cpca/overdraw.h"
 #include "cpca/reclassify.h"
 #include "cpca/superclusters.h"
@@ -48,6 +49,7 @@ Coherence make_coherent(std::span<const float> signal, std::span<const std::uint
   coherence.moved_count = moved.moved_count;
   coherence.initial_error = moved.initial_error;
   coherence.final_error = moved.final_error;
+  drop_empty_clusters(encoding);
   coherence.sent_reclassified = sent_triangle_count(indices, encoding.cluster_of_point);
   coherence.first_clusters = sort_clusters(
       find_superclusters(indices, encoding.cluster_of_point, register_counts(encoding, row_count),

@@ -30,7 +30,8 @@ struct Coherence {
   double initial_error = 0.0, final_error = 0.0;  ///< squared, weighted, over all points
 };
 
-/// Reclassifies points, finds superclusters and sorts the clusters by them. `signal` is what the
+/// Reclassifies points, drops clusters that this leaves empty, finds superclusters and sorts the
+/// clusters by them. `signal` is what the
 /// encoding encodes, `indices` three a triangle, each < point_count; `row_count` the exit rows of
 /// the transfer (cpca/superclusters.h). The same result for any number of threads. Throws Error
 /// (usage) for a negative or not finite budget, Error (failed) for another number of points or an

@@ -42,6 +42,8 @@ class GlossyRender(ToolTest):
         self.assertLess(self.difference(one, summed), 1e-5)
         exact, _ = self.render("exact.exr", "--transfer", self.transfer)
         self.assertLess(self.difference(exact, one), 0.1)
+        shown = json.loads(self.done("prt-inspect", self.model, "--json").stdout)
+        self.assertEqual(shown["findings"], [])
         lamp = ("--sphere-light", "0,2,2,0.3,30,30,30", "--point-light", "2,0,1,4,3,2")
         blended, _ = self.render("grid.exr", *lamp)
         exact, _ = self.render("exact.exr", *lamp, "--light-grid", 8, "--transfer", self.transfer)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "compress/encode.h"
 #include "compress/signal.h"
@@ -84,6 +85,34 @@ TEST_F(CompressedModel, KeepsToTheBoundAsWritten) {
     }
   }
   EXPECT_GT(moved_count, 0);
+}
+
+TEST_F(CompressedModel, HasAVertexInEveryCluster) {
+  signal::TransferSignal twice = signal_;  // two different rows: a cluster each
+  for (std::size_t i = 0; i < twice.values.size(); ++i)
+    twice.values[i] = i < twice.values.size() / 2 ? 1.0f : 2.0f;
+  job_.cluster_count = 600;
+  job_.component_count = 1;
+  job_.storage.coherence.error_budget = 100.0;  // many moves
+  for (const bool is_incoherent : {false, true}) {
+    for (const signal::TransferSignal* signal : {&signal_, &twice}) {
+      signal::write_transfer(job_.transfer, *signal);
+      job_.storage.is_incoherent = is_incoherent;
+      Report report("test");
+      run(job_, report);
+      const cpca::Encoding encoding =
+          gltf::Document::load(job_.output).precomputed_transfer()->encoding;
+      const auto& labels = encoding.cluster_of_point;
+      const std::set<std::uint32_t> used(labels.begin(), labels.end());
+      EXPECT_EQ(encoding.cluster_count, static_cast<int>(used.size()));
+      EXPECT_EQ(report.json()["cluster_count"], encoding.cluster_count);
+      if (signal == &twice) {
+        EXPECT_EQ(encoding.cluster_count, 2);
+      } else if (!is_incoherent) {
+        EXPECT_LT(encoding.cluster_count, 600);
+      }
+    }
+  }
 }
 
 TEST_F(CompressedModel, TellsWhetherCoherenceIsLeftOut) {

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "cpca/empty_clusters.h"
 #include "cpca/encoder.h"
 #include "cpca/meshes.h"
 #include "cpca/overdraw.h"
@@ -171,6 +172,50 @@ TEST(Coherence, OverdrawFallsStepByStep) {
   EXPECT_EQ(coherence.sent_reclassified,
             plain_sent_count(sheet.indices, sheet.encoding.cluster_of_point));
   EXPECT_LE(coherence.final_error, 1.05 * coherence.initial_error);
+}
+
+TEST(EmptyClusters, AreLeftOutAndPointsReconstructAsBefore) {
+  Sheet sheet(14, 3);
+  Encoding& encoding = sheet.encoding;
+  for (std::uint32_t& cluster : encoding.cluster_of_point)
+    if (cluster == 0 || cluster == 5 || cluster == 13) cluster = 6;
+  for (const bool adaptive : {false, true}) {
+    Encoding before = encoding;
+    if (adaptive) {  // cluster 5 alone has three vectors
+      before.component_counts.assign(14, 2);
+      before.component_counts[3] = 0;
+      before.component_counts[5] = 3;
+      before.component_counts[12] = 1;
+    }
+    Encoding after = before;
+    drop_empty_clusters(after);
+    EXPECT_EQ(after.cluster_count, 11);
+    EXPECT_EQ(after.component_count, adaptive ? 2 : 3);
+    EXPECT_EQ(after.component_counts.size(), adaptive ? 11u : 0u);
+    EXPECT_EQ(after.means.size(), 11u * Sheet::kDimension);
+    EXPECT_EQ(point_errors(after, sheet.signal), point_errors(before, sheet.signal));
+    const std::vector<float> weights = after.weights;
+    drop_empty_clusters(after);
+    EXPECT_EQ(after.cluster_count, 11);
+    EXPECT_EQ(after.weights, weights);
+  }
+}
+
+TEST(Coherence, LeavesNoClusterEmpty) {
+  Sheet sheet(60, 1);
+  Encoding reclassified = sheet.encoding;
+  reclassify(sheet.signal, sheet.indices, 10.0, reclassified);
+  const Indices& labels = reclassified.cluster_of_point;
+  const std::set<std::uint32_t> used(labels.begin(), labels.end());
+  ASSERT_LT(used.size(), 60u);
+  const Coherence coherence =
+      make_coherent(sheet.signal, sheet.indices, 1, {.error_budget = 10.0, .register_budget = 16},
+                    sheet.encoding);
+  EXPECT_EQ(sheet.encoding.cluster_count, static_cast<int>(used.size()));
+  const Indices& stored = sheet.encoding.cluster_of_point;
+  EXPECT_EQ(std::set<std::uint32_t>(stored.begin(), stored.end()).size(), used.size());
+  EXPECT_LT(coherence.first_clusters.back(), used.size());
+  EXPECT_EQ(point_errors(sheet.encoding, sheet.signal), point_errors(reclassified, sheet.signal));
 }
 
 TEST(Coherence, DegenerateMeshesAreLeftAlone) {
