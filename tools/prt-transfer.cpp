@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/exit_rows.h"
 #include "core/file.h"
+#include "core/log.h"
 #include "gltf/document.h"
 #include "linalg/product.h"
 #include "ray/engine.h"
@@ -86,7 +87,11 @@ void check_usage(const Options& options) {
 mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
   const StageTimer timer(report, "load");
   report.add_input(path);
-  return gltf::Document::load(path).scene();
+  const gltf::Document document = gltf::Document::load(path);
+  mesh::Scene scene = document.scene();
+  for (const std::string& feature : document.unbaked_features())
+    log::warning("{}: {}", path.string(), feature);
+  return scene;
 }
 
 transfer::MatrixOptions matrix_options(const Options& options) {

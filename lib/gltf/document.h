@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "gltf/precomputed_transfer.h"
@@ -44,6 +45,10 @@ class Document {
   /// nodes, or a primitive that is no indexed triangle list with normals, is an Error that advises
   /// prt-import.
   mesh::Scene scene() const;
+
+  /// What scene() does not have of that: skins (meshes are in bind pose), morph targets and
+  /// animations. A line for people each, with the names; empty: nothing is missing.
+  std::vector<std::string> unbaked_features() const;
 
   /// PRTKIT_precomputed_transfer, if the file has it. Checks every accessor and range.
   std::optional<PrecomputedTransfer> precomputed_transfer() const;

@@ -110,7 +110,7 @@ std::vector<PrimitiveUse> list_primitives(const Model& model) {
       const auto mesh = static_cast<std::size_t>(node.mesh);
       for (std::size_t p = 0; p < model.meshes[mesh].primitives.size(); ++p) {
         if (model.meshes[mesh].primitives[p].mode >= TINYGLTF_MODE_TRIANGLES) {
-          uses.push_back({visit.node, mesh, p, world_from_local});
+          uses.push_back({visit.node, mesh, p, node.skin < 0 ? world_from_local : Matrix4()});
         } else {
           log::debug("{}: mesh {}: primitive {} draws points or lines, ignored", model.state.file,
                      mesh, p);

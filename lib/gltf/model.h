@@ -25,7 +25,7 @@ Model read_model(const State& state);
 /// nodes, as listed; primitives of a mesh in order. All numbering of vertices follows it.
 struct PrimitiveUse {
   std::size_t node, mesh, primitive;
-  Matrix4 world_from_local;
+  Matrix4 world_from_local;  ///< of a mesh with a skin, whose joints alone move it, the identity
 };
 std::vector<PrimitiveUse> list_primitives(const Model& model);
 const tinygltf::Primitive& primitive_of(const Model& model, const PrimitiveUse& use);
