@@ -84,12 +84,12 @@ void check_usage(const Options& options) {
   if (matrix && wide) reject("--bands above 8 needs --mode diffuse");
 }
 
-mesh::Scene load_scene(const std::filesystem::path& path, Report& report) {
+mesh::Scene load_scene(const std::filesystem::path& path, bool is_glossy, Report& report) {
   const StageTimer timer(report, "load");
   report.add_input(path);
   const gltf::Document document = gltf::Document::load(path);
   mesh::Scene scene = document.scene();
-  for (const std::string& feature : document.unbaked_features())
+  for (const std::string& feature : document.unbaked_features(scene, is_glossy))
     log::warning("{}: {}", path.string(), feature);
   return scene;
 }
@@ -115,18 +115,18 @@ transfer::MatrixOptions matrix_options(const Options& options) {
 void bake(Options& options, const cli::CommonOptions& common, Report& report) {
   check_usage(options);
   cli::check_paths({options.input}, {{options.output, {".exr"}, {}}}, common);
-  const mesh::Scene scene = load_scene(options.input, report);
+  const bool is_glossy = options.mode == "matrix";
+  const mesh::Scene scene = load_scene(options.input, is_glossy, report);
   options.diffuse.shadowed = !options.unshadowed;
   options.diffuse.seed = common.seed;
   options.diffuse.checkpoint = cli::checkpoint_beside(options.output);
   options.diffuse.scratch.folder = folder_of(options.output);
   transfer::DiffuseStats stats;
   const signal::TransferSignal signal =
-      options.mode == "matrix"
-          ? transfer::bake_matrices(scene, matrix_options(options), options.output,
-                                    common.no_clobber, stats, report)
-          : transfer::bake_diffuse(scene, options.diffuse, options.output, common.no_clobber, stats,
-                                   report);
+      is_glossy ? transfer::bake_matrices(scene, matrix_options(options), options.output,
+                                          common.no_clobber, stats, report)
+                : transfer::bake_diffuse(scene, options.diffuse, options.output, common.no_clobber,
+                                         stats, report);
   remove_checkpoint(options.diffuse.checkpoint.path);
   transfer::report_figures(report, stats, signal);
   report.add_output(options.output);

@@ -46,9 +46,10 @@ class Document {
   /// prt-import.
   mesh::Scene scene() const;
 
-  /// What scene() does not have of that: skins (meshes are in bind pose), morph targets and
-  /// animations. A line for people each, with the names; empty: nothing is missing.
-  std::vector<std::string> unbaked_features() const;
+  /// What a bake leaves out of that: skins (meshes are in bind pose), morph targets, animations,
+  /// features of materials that it does not know and, unless it is glossy, metals. A line for
+  /// people each, with names; empty: nothing is missing. `scene` is what scene() gave.
+  std::vector<std::string> unbaked_features(const mesh::Scene& scene, bool is_glossy) const;
 
   /// PRTKIT_precomputed_transfer, if the file has it. Checks every accessor and range.
   std::optional<PrecomputedTransfer> precomputed_transfer() const;

@@ -19,9 +19,28 @@ Document imported(ordered_json json) {
   return import_file(folder.write("a.gltf", json.dump()), {}).document;
 }
 
+Lines lines_of(const Document& document, bool is_glossy = false) {
+  return document.unbaked_features(document.scene(), is_glossy);
+}
+
+/// With its triangle of each of these materials.
+Document of_materials(const std::string& materials) {
+  ordered_json json = samples::triangle_json();
+  json["materials"] = ordered_json::parse(materials);
+  json["textures"] = ordered_json::parse(R"([{}])");
+  const ordered_json node = json["nodes"][0], mesh = json["meshes"][0];
+  for (std::size_t i = 0; i < json["materials"].size(); ++i) {
+    json["nodes"][i] = {{"mesh", i}};
+    json["scenes"][0]["nodes"][i] = i;
+    json["meshes"][i] = mesh;
+    json["meshes"][i]["primitives"][0]["material"] = i;
+  }
+  return imported(json);
+}
+
 TEST(Unbaked, IsNothingOfAPlainFile) {
-  EXPECT_EQ(samples::parse(samples::triangle_json()).unbaked_features(), Lines());
-  EXPECT_EQ(Document::from_scene(samples::scene()).unbaked_features(), Lines());
+  EXPECT_EQ(lines_of(imported(samples::triangle_json())), Lines());  // and without a material
+  EXPECT_EQ(lines_of(Document::from_scene(samples::scene())), Lines());
 }
 
 TEST(Unbaked, SkinnedMeshesStandInBindPoseWhateverTheirNodesTransform) {
@@ -36,7 +55,7 @@ TEST(Unbaked, SkinnedMeshesStandInBindPoseWhateverTheirNodesTransform) {
   ASSERT_EQ(scene.primitives.size(), 2u);
   EXPECT_EQ(scene.primitives[0].mesh.positions[1], Vec3(1, 0, 0));
   EXPECT_EQ(scene.primitives[1].mesh.positions[1], Vec3(6, 2, 0));
-  EXPECT_EQ(document.unbaked_features(), Lines{"skins are baked in bind pose: body"});
+  EXPECT_EQ(lines_of(document), Lines{"skins are baked in bind pose: body"});
 }
 
 TEST(Unbaked, MorphTargetsAndAnimationsAreNamed) {
@@ -46,9 +65,42 @@ TEST(Unbaked, MorphTargetsAndAnimationsAreNamed) {
   json["animations"] = ordered_json::parse(R"([{"channels": [], "samplers": []}])");
   const Document document = imported(json);
   EXPECT_EQ(document.scene().primitives[0].mesh.positions[1], Vec3(1, 0, 0));
-  EXPECT_EQ(document.unbaked_features(),
-            (Lines{"morph targets are left out, whatever their weights: face",
-                   "1 animation is left out: nodes are baked as they stand"}));
+  EXPECT_EQ(lines_of(document), (Lines{"morph targets are left out, whatever their weights: face",
+                                       "1 animation is left out: nodes are baked as they stand"}));
+}
+
+TEST(Unbaked, FeaturesOfMaterialsAreOneLine) {
+  const Document document = of_materials(R"([
+    {"name": "stone", "pbrMetallicRoughness": {"metallicFactor": 0}, "normalTexture": {"index": 0}},
+    {"name": "lamp", "pbrMetallicRoughness": {"metallicFactor": 0}, "emissiveFactor": [0, 2, 0],
+     "normalTexture": {"index": 0}},
+    {"name": "car", "pbrMetallicRoughness": {"metallicFactor": 0},
+     "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1},
+                    "KHR_materials_sheen": {"sheenColorFactor": [0, 0, 1]}}}])");
+  const Lines expected{
+      "not baked of its materials: KHR_materials_clearcoat (car); KHR_materials_sheen (car); "
+      "emission (lamp); normalTexture (stone, lamp)"};
+  EXPECT_EQ(lines_of(document), expected);
+  EXPECT_EQ(lines_of(document, true), expected);
+}
+
+TEST(Unbaked, FeaturesWithoutEffectAreNotNamed) {
+  EXPECT_EQ(lines_of(of_materials(R"([
+    {"pbrMetallicRoughness": {"metallicFactor": 0}, "emissiveFactor": [0, 0, 0],
+     "occlusionTexture": {"index": 0}, "emissiveTexture": {"index": 0},
+     "extensions": {"KHR_materials_clearcoat": {}, "KHR_materials_ior": {"ior": 1.4},
+                    "KHR_materials_transmission": {"transmissionFactor": 0},
+                    "KHR_materials_sheen": {"sheenColorFactor": [0, 0, 0]}}}])")),
+            Lines());
+}
+
+TEST(Unbaked, MetalsAreNamedOfDiffuseBakesUnlessNearlyMatt) {
+  const Document document = of_materials(R"([
+    {"name": "gold", "pbrMetallicRoughness": {"roughnessFactor": 0.3}},
+    {"name": "rust", "pbrMetallicRoughness": {}},
+    {"name": "varnish", "pbrMetallicRoughness": {"metallicFactor": 0.2, "roughnessFactor": 0.3}}])");
+  EXPECT_EQ(lines_of(document), Lines{"metals are baked matt: gold; --mode matrix has them shine"});
+  EXPECT_EQ(lines_of(document, true), Lines());
 }
 
 }  // namespace
