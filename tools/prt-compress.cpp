@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
   add_method(tool.options(), job);
   add_bounds(tool.options(), job.bound);
   add_storage(tool.options(), signal, job.storage);
+  tool.add_seed();
   tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) {
     job.seed = tool.common().seed;

@@ -1,5 +1,4 @@
-// prt-render: pictures of a model under a light, without a window. The work is in
-// runtime/render_job.h and runtime/reference/reference_job.h.
+// prt-render: pictures without a window (runtime/render_job.h, runtime/reference/reference_job.h).
 #include <map>
 #include <string>
 
@@ -127,6 +126,7 @@ int main(int argc, char** argv) {
   add_picture_options(tool.options(), options.picture);
   add_render_options(tool.options(), options);
   add_reference_options(tool.options(), reference_options, reference);
+  tool.add_seed()->needs(tool.options().get("--reference"));
   tool.add_component("Embree", prt::ray::embree_version);
   tool.add_component("OpenGL", [] {
     const prt::gl::HeadlessContext context;

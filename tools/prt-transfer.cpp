@@ -142,6 +142,7 @@ int main(int argc, char** argv) {
   Options options;
   add_options(tool.options(), options);
   add_matrix_options(tool.options(), options);
+  tool.add_seed();
   tool.add_component("Embree", ray::embree_version);
   tool.add_component("BLAS", linalg::blas_description);
   return tool.run(argc, argv, [&](Report& report) { bake(options, tool.common(), report); });

@@ -22,6 +22,7 @@ namespace prt::cli {
 
 namespace {
 
+constexpr const char* kCommonGroup = "Common";
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
@@ -67,7 +68,7 @@ std::string conversion_message(const CLI::App& app, const std::string& what) {
 /// CLI11 calls a missing value by the types of its checks, and lists unknown arguments backwards.
 std::string message_of(const CLI::App& app, const CLI::Error& error) {
   const std::string what = error.what();
-  if (error.get_name() == "ExtrasError") {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
     return fmt::format("not understood: {}", fmt::join(app.remaining(true), " "));
   }
   if (error.get_name() == "ArgumentMismatch" && what.ends_with(" missing")) {
@@ -102,11 +103,10 @@ Tool::Tool(std::string name, std::string description, std::string example)
     return fmt::format("{}: {}{} {} --help says more.\n", name_, what,
                        what.ends_with('.') ? "" : ".", name_);
   });
-  const char* group = "Common";
+  const char* group = kCommonGroup;
   options_.add_option("--threads", common_.threads, "Threads; 0: all")
       ->check(Range(0, 1024))
       ->group(group);
-  options_.add_option("--seed", common_.seed, "Seed of everything random")->group(group);
   options_.add_option("--report", common_.report, "Write a JSON report of the run")->group(group);
   options_.add_flag("--no-clobber", common_.no_clobber, "Fail when the output exists")
       ->group(group);
@@ -117,6 +117,11 @@ Tool::Tool(std::string name, std::string description, std::string example)
 }
 
 Tool::~Tool() = default;
+
+Option* Tool::add_seed() {
+  return options_.add_option("--seed", common_.seed, "Seed of everything random")
+      ->group(kCommonGroup);
+}
 
 void Tool::add_component(const std::string& name, const std::function<std::string()>& describe) {
   components_.emplace_back(name, describe);

@@ -14,10 +14,10 @@
 
 namespace prt::cli {
 
-/// Options that every tool takes.
+/// Options that every tool takes, but for the seed.
 struct CommonOptions {
-  int threads = 0;  ///< 0: all processors
-  std::uint64_t seed = 1;
+  int threads = 0;         ///< 0: all processors
+  std::uint64_t seed = 1;  ///< of tools with add_seed
   bool no_clobber = false;
   bool verbose = false;
   bool quiet = false;
@@ -33,6 +33,9 @@ class Tool {
 
   Options& options() { return options_; }
   const CommonOptions& common() const { return common_; }
+
+  /// --seed, for tools that draw random numbers.
+  Option* add_seed();
 
   /// Something whose version or kind `--version -v` tells: "BLAS", asked only then.
   void add_component(const std::string& name, const std::function<std::string()>& describe);

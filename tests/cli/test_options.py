@@ -22,12 +22,18 @@ class Options(ToolTest):
 
     def test_options_of_the_reference_need_it_and_those_of_real_time_exclude_it(self):
         render = ("prt-render", self.quad, "-o", self.folder / "a.png")
-        for option in (("--samples", 4), ("--bounces", 1), ("--light-mode", "full"),
+        for option in (("--samples", 4), ("--bounces", 1), ("--seed", 2), ("--light-mode", "full"),
                        ("--noise-output", self.folder / "n.exr")):
             self.wrong(f"{option[0]} requires --reference", *render, *option)
         for option in (("--transfer", self.quad), ("--draw", "single"), ("--show", "clusters")):
             self.wrong(f"{option[0]}.*excludes|excludes.*{option[0]}", *render, *option,
                        "--reference")
+
+    def test_tools_that_draw_no_random_numbers_take_no_seed(self):
+        self.wrong("not understood: --seed", "prt-import", self.source, "-o",
+                   self.folder / "a.glb", "--seed", 1)
+        self.wrong("not understood: --seed", "prt-light", "--constant", "1,1,1", "-o",
+                   self.folder / "a.json", "--seed", 1)
 
     def test_options_of_the_viewer_need_what_they_are_for(self):
         self.wrong("--transfer requires model", "prt-view", "--transfer", self.quad)
@@ -111,7 +117,7 @@ class Options(ToolTest):
     def test_numbers_out_of_range(self):
         out = ("-o", self.folder / "a.glb")
         for value in ("-1", "18446744073709551616"):
-            self.wrong("--seed: out of range", "prt-import", self.source, *out, "--seed", value)
+            self.wrong("--seed: out of range", "prt-transfer", self.source, *out, "--seed", value)
         self.wrong("--max-edge: expected a number from 0 up, found -1", "prt-import", self.source,
                    *out, "--max-edge", -1)
         self.wrong("--unit: expected a number above 0, found 0", "prt-import", self.source, *out,
