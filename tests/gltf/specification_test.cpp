@@ -117,5 +117,23 @@ TEST(Specification, GlossyExampleGivesTheRadianceTowardsTheEye) {
   }
 }
 
+TEST(Specification, FramesOfAMirroredNodeAreMirrored) {
+  const auto path = kFolder / "example_glossy.gltf";
+  nlohmann::json json = nlohmann::json::parse(read_text_file(path));
+  const mesh::TriangleMesh plain = Document::load(path).scene().primitives.at(0).mesh;
+  json.at("nodes").at(0)["scale"] = {-1, 1, 1};
+  const std::string text = json.dump();
+  const mesh::TriangleMesh mirrored =
+      Document::parse(std::as_bytes(std::span(text)), path).scene().primitives.at(0).mesh;
+  ASSERT_EQ(plain.vertex_count(), 4u);
+  for (std::size_t vertex = 0; vertex < 3; ++vertex) {  // the last one's tangent says nothing
+    const mesh::Frame before = mesh::frame_at_vertex(plain, vertex);
+    const mesh::Frame after = mesh::frame_at_vertex(mirrored, vertex);
+    for (const auto& [a, b] :
+         {std::pair(before.x, after.x), std::pair(before.y, after.y), std::pair(before.z, after.z)})
+      EXPECT_LT((Vec3(-a.x, a.y, a.z) - b).length(), 1e-6f) << vertex;
+  }
+}
+
 }  // namespace
 }  // namespace prt::gltf
