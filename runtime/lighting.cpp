@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "image/environment.h"
 #include "sh/basis.h"
@@ -61,6 +62,18 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count) {
   image::Image map = image::read_environment(path);
   sh::Light light = sh::project_environment(band_count, map.width, map.height, map.pixels.data());
   return {std::move(light), std::move(map), true};
+}
+
+sh::WindowedLight damp(Lighting& lighting, std::optional<sh::Window> window) {
+  constexpr double kMostNegative = 0.05;
+  sh::WindowedLight damped = sh::windowed(lighting.light, window.value_or(sh::Window::none));
+  lighting.light = damped.light;
+  if (!window && damped.ringing.negative_fraction > kMostNegative)
+    log::warning(
+        "the light rings: negative over {:.0f}% of the sphere, down to {:.2g} of its mean; "
+        "--window auto damps it",
+        100 * damped.ringing.negative_fraction, damped.ringing.minimum_over_mean);
+  return damped;
 }
 
 sh::Light default_light(int band_count) {

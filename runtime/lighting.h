@@ -3,10 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "core/vec.h"
 #include "image/image.h"
-#include "sh/light.h"
+#include "sh/window.h"
 
 namespace prt::runtime {
 
@@ -25,6 +26,10 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count);
 
 /// A given light, its background drawn from its coefficients.
 Lighting lighting_from(sh::Light light);
+
+/// Damps what lights the model; what stands behind it stays as sharp as it was. Unset: none, with a
+/// warning where more than 5% of the directions ring.
+sh::WindowedLight damp(Lighting& lighting, std::optional<sh::Window> window);
 
 /// When none is given: a warm lamp on the left, above and in front, and a dim sky.
 sh::Light default_light(int band_count);

@@ -9,6 +9,7 @@
 #include "gl/context.h"
 #include "runtime/light_inside.h"
 #include "runtime/picture.h"
+#include "sh/window_report.h"
 
 namespace prt::runtime {
 
@@ -29,10 +30,10 @@ View make_view(const RenderOptions& options, const Model& model) {
 }
 
 /// Near lights take the place of the usual lamp.
-Lighting make_distant_lighting(const RenderOptions& options, const Model& model) {
+Lighting make_distant_lighting(const RenderOptions& options, const Model& model, Report& report) {
   const bool only_near = options.picture.light.empty() && !options.near_lights.empty();
   return only_near ? lighting_from(sh::Light(model.band_count()))
-                   : make_lighting(options.picture, model.band_count());
+                   : make_lighting(options.picture, model.band_count(), report);
 }
 
 /// Turns the light, and reports how long all that follows from it takes.
@@ -66,16 +67,19 @@ void check_options(const PictureOptions& options) {
                 {.file = options.light.string(), .expected = "an environment map"});
 }
 
-Lighting make_lighting(const PictureOptions& options, int transfer_band_count) {
+Lighting make_lighting(const PictureOptions& options, int transfer_band_count, Report& report) {
   const int usual = transfer_band_count > 0 ? transfer_band_count : kDefaultBandCount;
   const int band_count = options.band_count > 0 ? options.band_count : usual;
   Lighting lighting = options.light.empty() ? lighting_from(default_light(band_count))
                                             : load_lighting(options.light, band_count);
-  if (transfer_band_count == 0 || lighting.light.band_count <= transfer_band_count) return lighting;
-  log::warning("the light has {} bands, the transfer {}: the others are cut",
-               lighting.light.band_count, transfer_band_count);
-  lighting.light = sh::with_band_count(lighting.light, transfer_band_count);
-  if (!lighting.is_full_map) lighting = lighting_from(lighting.light);
+  if (transfer_band_count > 0 && lighting.light.band_count > transfer_band_count) {
+    log::warning("the light has {} bands, the transfer {}: the others are cut",
+                 lighting.light.band_count, transfer_band_count);
+    lighting.light = sh::with_band_count(lighting.light, transfer_band_count);
+    if (!lighting.is_full_map) lighting = lighting_from(lighting.light);
+  }
+  const std::optional quiet = options.window.value_or(sh::Window::none);  // of the usual lamp
+  sh::report_window(damp(lighting, options.light.empty() ? quiet : options.window), report);
   return lighting;
 }
 
@@ -96,7 +100,7 @@ void render(const RenderOptions& options, Report& report) {
   warn_of_lights_inside(model, options.near_lights);
   View view = make_view(options, model);
   stage.emplace(report, "load light");
-  const Lighting lighting = make_distant_lighting(options, model);
+  const Lighting lighting = make_distant_lighting(options, model, report);
   stage.emplace(report, "open OpenGL");
   const gl::HeadlessContext context({.debug = options.debug});
   log::debug("OpenGL {}", gl::description());

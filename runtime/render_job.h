@@ -15,9 +15,10 @@ namespace prt::runtime {
 /// Everything that says which picture is wanted, whoever renders it.
 struct PictureOptions {
   std::filesystem::path model{}, output{};
-  std::filesystem::path light{};  ///< .json, or an environment map; empty: default_light
-  int band_count = 0;             ///< of a projected map; 0: as many as the transfer, else 5
-  float light_rotation = 0.0f;    ///< degrees about +Y, counter-clockwise seen from above
+  std::filesystem::path light{};       ///< .json, or an environment map; empty: default_light
+  int band_count = 0;                  ///< of a projected map; 0: as many as the transfer, else 5
+  std::optional<sh::Window> window{};  ///< unset: as damp() of runtime/lighting.h has it
+  float light_rotation = 0.0f;         ///< degrees about +Y, counter-clockwise seen from above
   int width = 1024, height = 1024;
   std::optional<Vec3> eye{}, target{};  ///< unset: frame the model
   Vec3 up{0.0f, 1.0f, 0.0f};
@@ -51,8 +52,9 @@ void check_options(const PictureOptions& options);
 
 /// The options' light, not yet turned. A map is projected to as many bands as asked for, else as
 /// many as the transfer has, else 5; bands that the transfer lacks are cut, so that the real-time
-/// picture and its reference show the same light. `transfer_band_count` 0: no transfer.
-Lighting make_lighting(const PictureOptions& options, int transfer_band_count);
+/// picture and its reference show the same light; then it is damped. `transfer_band_count` 0: no
+/// transfer. Adds "window" to the report.
+Lighting make_lighting(const PictureOptions& options, int transfer_band_count, Report& report);
 
 /// What is behind the model: as asked for, else the light that was given, else a colour.
 Background make_background(const PictureOptions& options, Show show);

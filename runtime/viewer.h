@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ struct ViewerOptions {
   std::filesystem::path screenshot;  ///< empty: interactive; else write the window and end
   int screenshot_frame_count = 3;    ///< frames drawn before the screenshot
   std::vector<NearLight> near_lights{};
-  int grid_size = 3;               ///< that near lights are sampled on
-  bool animate = false;            ///< turn the light as time goes by
-  int band_count = 0;              ///< of a projected map; 0: as the model
-  int width = 1280, height = 800;  ///< of the window
+  int grid_size = 3;                   ///< that near lights are sampled on
+  bool animate = false;                ///< turn the light as time goes by
+  int band_count = 0;                  ///< of a projected map; 0: as the model
+  std::optional<sh::Window> window{};  ///< unset: as damp() of runtime/lighting.h has it
+  int width = 1280, height = 800;      ///< of the window
   Draw draw = Draw::single;
   Show show = Show::radiance;
   float exposure = 0.0f;       ///< stops
@@ -61,6 +63,8 @@ class Viewer {
   const std::string& message() const { return message_; }
   /// What the panel says of the model.
   const std::string& model_text() const { return model_text_; }
+  /// The distant light as it is damped against ringing, before it is turned.
+  const sh::WindowedLight& light_window() const { return light_window_; }
 
  private:
   void load_model_file(const std::filesystem::path& model, const std::filesystem::path& transfer);
@@ -91,6 +95,7 @@ class Viewer {
   std::filesystem::path model_path_;
   std::filesystem::path light_path_;  // empty: default_light
   std::string model_text_, light_text_, message_;
+  sh::WindowedLight light_window_;
   int model_band_count_ = 0, light_band_count_ = 0;  // of what is loaded; 0: nothing
   Matrix4 world_from_light_;
   camera::Sphere bounds_;  // of the model

@@ -12,6 +12,7 @@
 #include "sh/basis.h"
 #include "sh/light_edit.h"
 #include "sh/projection.h"
+#include "sh/window_report.h"
 
 namespace {
 
@@ -24,8 +25,8 @@ struct Options {
   std::size_t max_pixels = image::kMaxPixels;
   std::map<AnalyticKind, std::vector<float>> analytic;
   std::vector<float> rotation{0, 0, 0};
-  std::string window = "none";
   sh::LightEdit edit;
+  sh::Window window = sh::Window::none;
 };
 
 sh::Light map_light(const Options& options, Report& report) {
@@ -62,7 +63,8 @@ void run(const Options& options, const cli::CommonOptions& common, Report& repor
   }
   cli::check_paths({options.input}, {{options.output, {".json"}, {}}}, common);
   if (!options.input.empty()) light = sum(map_light(options, report), light);
-  light = edited(light, options.edit);
+  const sh::WindowedLight windowed = sh::windowed(edited(light, options.edit), options.window);
+  light = windowed.light;
   sh::write_light(options.output, light, common.no_clobber);
   const sh::LightStatistics statistics = sh::statistics_of(light);
   report.json()["band_count"] = light.band_count;
@@ -71,6 +73,7 @@ void run(const Options& options, const cli::CommonOptions& common, Report& repor
   report.json()["minimum_luminance"] = statistics.minimum_luminance;
   report.json()["maximum_luminance"] = statistics.maximum_luminance;
   report.json()["negative_fraction"] = statistics.negative_fraction;
+  sh::report_window(windowed, report);
   report.add_output(options.output);
 }
 
@@ -105,9 +108,8 @@ void add_options(cli::Options& app, Options& options) {
   app.add_option("--exposure", options.edit.exposure, "Radiance times 2^EXPOSURE (stops)")
       ->check(cli::Range(-64.0, 64.0))
       ->group("Changes");
-  app.add_option("--window", options.window, "Damps higher bands against ringing")
-      ->check(cli::IsMember({"none", "hann", "lanczos"}))
-      ->type_name("NAME")
+  app.add_choice("--window", options.window, sh::kWindows,
+                 "Damps higher bands against ringing; auto: as little as does [none]")
       ->group("Changes");
 }
 
@@ -122,7 +124,6 @@ int main(int argc, char** argv) {
   add_options(tool.options(), options);
   return tool.run(argc, argv, [&](Report& report) {
     options.edit.rotation = Vec3(options.rotation[0], options.rotation[1], options.rotation[2]);
-    options.edit.window = sh::window_from_name(options.window);
     run(options, tool.common(), report);
   });
 }

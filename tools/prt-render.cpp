@@ -11,6 +11,7 @@
 #include "runtime/reference/reference_job.h"
 #include "runtime/render_job.h"
 #include "tools/near_light_options.h"
+#include "tools/window_option.h"
 
 namespace {
 
@@ -48,6 +49,7 @@ void add_picture_options(prt::cli::Options& app, PictureOptions& options) {
   app.add_option("--bands", options.band_count,
                  "Bands that a map is projected to; 0: those of the transfer, else 5")
       ->check(prt::cli::Range(0, 16));
+  prt::add_window(app, options.window);
   app.add_option("--rotate-light", options.light_rotation,
                  "Turn the light about +Y, degrees, counter-clockwise from above");
 

@@ -7,7 +7,9 @@
 #include "cli/paths.h"
 #include "cli/tool.h"
 #include "runtime/viewer.h"
+#include "sh/window_report.h"
 #include "tools/near_light_options.h"
+#include "tools/window_option.h"
 
 namespace {
 
@@ -33,6 +35,7 @@ void add_options(prt::cli::Options& app, ViewerOptions& options) {
                  "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
   app.add_option("--bands", options.band_count, "Bands that a map is projected to; 0: the model's")
       ->check(prt::cli::Range(0, 16));
+  prt::add_window(app, options.window);
   app.add_text(
          "--mode",
          [&](const std::string& mode) { std::tie(options.draw, options.show) = kModes.at(mode); },
@@ -67,6 +70,7 @@ int main(int argc, char** argv) {
     options.debug = tool.common().verbose;
     prt::runtime::Viewer viewer(options);
     report.json()["start_seconds"] = viewer.run();
+    prt::sh::report_window(viewer.light_window(), report);
     if (tool.common().report.empty()) return;  // files may have gone since they were opened
     for (const auto& input : inputs) {
       if (!input.empty()) report.add_input(input);

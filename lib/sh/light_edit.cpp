@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
 #include "sh/basis.h"
 #include "sh/projection.h"
 
@@ -14,18 +13,6 @@ namespace {
 
 using std::numbers::pi;
 constexpr int kGridHeight = 90;
-
-double window_factor(Window window, int l, int band_count) {
-  const double x = pi * l / band_count;
-  switch (window) {
-    case Window::hann:
-      return (1 + std::cos(x)) / 2;
-    case Window::lanczos:
-      return l == 0 ? 1 : std::sin(x) / x;
-    default:
-      return 1;
-  }
-}
 
 Matrix4 rotation_matrix(const Vec3& degrees) {
   Matrix4 matrix;  // row vectors: the first factor acts first
@@ -40,25 +27,11 @@ Matrix4 rotation_matrix(const Vec3& degrees) {
 
 }  // namespace
 
-Window window_from_name(const std::string& name) {
-  if (name == "none") return Window::none;
-  if (name == "hann") return Window::hann;
-  if (name == "lanczos") return Window::lanczos;
-  throw Error(ErrorKind::usage, "unknown window", {.found = name, .expected = "hann or lanczos"});
-}
-
 Light edited(const Light& light, const LightEdit& edit) {
   Light result = edit.rotation == Vec3(0) ? light : rotated(light, rotation_matrix(edit.rotation));
-  const double gain = std::exp2(double{edit.exposure});
-  for (auto& channel : result.coefficients) {
-    for (int l = 0; l < light.band_count; ++l) {
-      const double factor = gain * window_factor(edit.window, l, light.band_count);
-      for (int m = -l; m <= l; ++m) {
-        float& value = channel[static_cast<std::size_t>(coefficient_index(l, m))];
-        value = static_cast<float>(double{value} * factor);
-      }
-    }
-  }
+  const auto gain = static_cast<float>(std::exp2(double{edit.exposure}));
+  for (auto& channel : result.coefficients)
+    for (float& value : channel) value *= gain;
   return result;
 }
 

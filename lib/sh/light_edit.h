@@ -7,16 +7,9 @@
 
 namespace prt::sh {
 
-/// A factor per band that trades sharpness for less ringing [Sloan 2008, Stupid SH Tricks]:
-/// Hann's (1 + cos(pi l / band_count)) / 2, Lanczos' sin(pi l / band_count) / (pi l / band_count).
-enum class Window { none, hann, lanczos };
-/// Of "none", "hann" or "lanczos". Throws Error (usage).
-Window window_from_name(const std::string& name);
-
 struct LightEdit {
   Vec3 rotation{0};    ///< degrees about world +X, then +Y, then +Z, right-handed
   float exposure = 0;  ///< stops: radiance times 2^exposure
-  Window window = Window::none;
 };
 
 Light edited(const Light& light, const LightEdit& edit);

@@ -72,8 +72,12 @@ double relative_standard_error(const reference::Result& result) {
 }  // namespace
 
 void render_reference(const ReferenceOptions& options, Report& report) {
-  const PictureOptions& picture = options.picture;
+  PictureOptions picture = options.picture;
   check_options(picture);
+  if (options.full_map && picture.window)
+    throw Error(ErrorKind::usage, "--window has no effect with --light-mode full",
+                {.expected = "--light-mode band-limited"});
+  if (options.full_map) picture.window = sh::Window::none;  // bands that ring are not seen
   check_output(picture.output, picture.no_clobber);
   const Background background = make_background(picture, Show::radiance);
   std::optional<StageTimer> stage(std::in_place, report, "load model");
@@ -83,7 +87,7 @@ void render_reference(const ReferenceOptions& options, Report& report) {
   const camera::Camera camera = make_camera(picture, camera::bounding_sphere(scene));
   stage.emplace(report, "load light");
   const std::string brdf = options.brdf.value_or(transfer ? transfer->brdf : "lambert");
-  const Lighting lighting = make_lighting(picture, transfer ? transfer->band_count : 0);
+  const Lighting lighting = make_lighting(picture, transfer ? transfer->band_count : 0, report);
   const auto illumination = make_illumination(lighting, options);
   stage.emplace(report, "trace");
   reference::Result result = reference::trace(

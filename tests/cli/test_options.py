@@ -5,7 +5,7 @@ import json
 import os
 import unittest
 
-from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, WRONG_USAGE, ToolTest
+from toolbox import BAD_INPUT, FAILED, QUAD_OBJ, WORLD, WRONG_USAGE, ToolTest
 
 
 class Options(ToolTest):
@@ -34,6 +34,42 @@ class Options(ToolTest):
                    self.folder / "a.glb", "--seed", 1)
         self.wrong("not understood: --seed", "prt-light", "--constant", "1,1,1", "-o",
                    self.folder / "a.json", "--seed", 1)
+
+    def test_damping_shapes_the_light_of_the_model_and_not_the_background(self):
+        sky = WORLD / "sunrise.exr"
+        render = ("prt-render", self.quad, "--reference", "--samples", 4, "--size", "16x16",
+                  "--report", self.folder / "r")
+
+        def window(*options):
+            """The report's window, the picture, and what the tool said."""
+            result = self.done(*render, "-o", self.folder / "a.exr", *options)
+            report = json.loads((self.folder / "r").read_text())["window"]
+            return report, (self.folder / "a.exr").read_bytes(), result.stderr
+
+        away = ("--light", sky, "--eye", "0,0,9", "--target", "0,0,20")  # sees the map alone
+        plain, behind, said = window(*away, "--window", "none")
+        self.assertEqual((plain["name"], plain["strength"], said), ("none", 0, ""))
+        self.assertLess(plain["minimum_over_mean"], -2)
+        self.assertGreater(plain["negative_fraction"], 0.4)
+        usual, same, said = window(*away)
+        self.assertEqual((usual, same), (plain, behind))
+        self.assertRegex(said, "rings.*negative over 47%.*--window auto")
+        damped, same, said = window(*away, "--window", "auto")
+        self.assertEqual((damped["name"], said), ("auto", ""))
+        self.assertAlmostEqual(damped["minimum_over_mean"], -0.05, 3)
+        self.assertEqual(same, behind)
+        lit = ("--light", sky, "--window")
+        self.assertNotEqual(window(*lit, "auto")[1], window(*lit, "none")[1])
+
+        light = self.folder / "sky.json"
+        self.done("prt-light", sky, "-o", light)
+        self.assertEqual(window("--light", light, "--window", "auto")[0], damped)
+        self.done("prt-light", sky, "-o", light, "--window", "auto", "--report", self.folder / "r")
+        self.assertEqual(json.loads((self.folder / "r").read_text())["window"], damped)
+        self.assertEqual(window()[2], "")  # prtkit's own lamp
+        self.assertEqual(window("--light", sky, "--light-mode", "full")[2], "")
+        self.wrong("--window.*full", *render, "-o", self.folder / "b.exr", "--light", sky,
+                   "--light-mode", "full", "--window", "auto")
 
     def test_options_of_the_viewer_need_what_they_are_for(self):
         self.wrong("--transfer requires model", "prt-view", "--transfer", self.quad)

@@ -233,9 +233,12 @@ class View(ToolTest):
         self.done("prt-transfer", glb, "-o", transfer, "--rays", 64)
         self.done("prt-compress", glb, transfer, "-o", baked, "--clusters", 8)
         result = subprocess.run(
-            ["xvfb-run", "-a", BIN / "prt-view", baked, "--light", WORLD / "city.exr",
-             "--screenshot", shot], capture_output=True, text=True, timeout=120)
+            ["xvfb-run", "-a", BIN / "prt-view", baked, "--light", WORLD / "city.exr", "--window", "auto",
+             "--screenshot", shot, "--report", self.folder / "r"], capture_output=True, text=True, timeout=120)
         self.assertEqual(result.returncode, 0, result.stderr)
+        report = json.loads((self.folder / "r").read_text())
+        self.assertEqual(report["window"]["name"], "auto")
+        self.assertGreater(report["window"]["strength"], 0)
         self.assertEqual(shot.read_bytes()[:4], b"\x89PNG")
         self.assertGreater(shot.stat().st_size, 5000)
 

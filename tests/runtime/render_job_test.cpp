@@ -59,12 +59,13 @@ TEST_F(RenderJobTest, LightOfMoreBandsThanTheTransferIsCutBehindTheModelToo) {
   const sh::Light light = test_light(6);
   sh::write_light(path("light.json"), light);
   const PictureOptions options{.light = path("light.json")};
-  const Lighting cut = make_lighting(options, 3);
+  Report report("prt-render");
+  const Lighting cut = make_lighting(options, 3, report);
   EXPECT_EQ(cut.light.band_count, 3);
   EXPECT_EQ(cut.environment.pixels,
             lighting_from(sh::with_band_count(light, 3)).environment.pixels);
-  EXPECT_EQ(make_lighting(options, 0).light.band_count, 6);
-  EXPECT_EQ(make_lighting({}, 3).light.band_count, 3);
+  EXPECT_EQ(make_lighting(options, 0, report).light.band_count, 6);
+  EXPECT_EQ(make_lighting({}, 3, report).light.band_count, 3);
 }
 
 TEST_F(RenderJobTest, CompressedTransferOfAnotherMeshIsDrawnWithAWarning) {
