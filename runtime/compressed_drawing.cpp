@@ -129,9 +129,14 @@ void CompressedDrawing::draw_single(const Viewpoint& viewpoint) const {
   });
 }
 
-bool CompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+bool CompressedDrawing::sum() {
   if (!sums_ || !sums_->make_room()) return false;
   if (!sums_->is_current()) sums_->fill(grid_, constants_, constant_table_);
+  return true;
+}
+
+bool CompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+  if (!sum()) return false;
   sums_->draw(viewpoint);
   return true;
 }

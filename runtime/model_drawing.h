@@ -40,6 +40,9 @@ class CompressedDrawing {
   /// The same from exit values that are kept while the light stays (runtime/exit_buffer.h). False,
   /// and nothing drawn, without keep_sums or room for them.
   [[nodiscard]] bool draw_kept(const Viewpoint& viewpoint);
+  /// The sums that draw_kept() draws, if the light has changed since; some framebuffer must be
+  /// bound. False without keep_sums or room for them.
+  bool sum();
   /// The loop of [Sloan03] §6.2: supercluster by supercluster, constants in uniform registers,
   /// added up by blending. Where two triangles coincide exactly, both are added.
   void draw_clusters(const Viewpoint& viewpoint) const;
@@ -82,6 +85,7 @@ class UncompressedDrawing {
   void draw(const Viewpoint& viewpoint) const;
   /// As CompressedDrawing's.
   [[nodiscard]] bool draw_kept(const Viewpoint& viewpoint);
+  bool sum();
 
  private:
   void bind(const gl::Program& program) const;

@@ -37,9 +37,11 @@ Lighting make_distant_lighting(const RenderOptions& options, const Model& model,
 }
 
 /// Turns the light, and reports how long all that follows from it takes.
-void turn_light(Renderer& renderer, float degrees, Report& report) {
+void turn_light(Renderer& renderer, const View& view, float degrees, Report& report) {
   const Stopwatch stopwatch;
   renderer.set_light_rotation(light_rotation(degrees));
+  renderer.prepare(view);
+  gl::finish();
   report.json()["light_change_seconds"] = stopwatch.seconds();
 }
 
@@ -116,7 +118,7 @@ void render(const RenderOptions& options, Report& report) {
   renderer.check_can_draw(view.draw, view.show);
   renderer.set_lighting(lighting);
   renderer.set_near_lights(options.near_lights, options.grid_size);
-  turn_light(renderer, picture.light_rotation, report);
+  turn_light(renderer, view, picture.light_rotation, report);
   stage.emplace(report, "draw");
   const image::Image image =
       renderer.render(view, picture.width, picture.height, options.sample_count);

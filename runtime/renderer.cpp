@@ -156,6 +156,12 @@ struct Renderer::Drawings {
     }
   }
 
+  void sum(const View& view) {
+    if (view.show != Show::radiance || view.sums != Sums::kept) return;
+    if (view.draw == Draw::single) compressed->sum();
+    if (view.draw == Draw::uncompressed) uncompressed->sum();
+  }
+
   void set_light(const LightField& field) {
     if (compressed) compressed->set_light(field);
     if (uncompressed) uncompressed->set_light(field);
@@ -178,7 +184,9 @@ Renderer::Renderer()
     : Renderer(gl::limits().float32_targets ? gl::Format::rgba32f : gl::Format::rgba16f) {}
 
 Renderer::Renderer(gl::Format float_format)
-    : composite_program_("fullscreen.vert", "composite.frag"), float_format_(float_format) {
+    : composite_program_("fullscreen.vert", "composite.frag"),
+      float_format_(float_format),
+      sum_target_(float_format, 1, 1, false, 1) {
   const float black[4] = {0.0f, 0.0f, 0.0f, 1.0f};
   environment_ = gl::Texture(gl::Format::rgba32f, 1, 1, black);
 }
@@ -187,32 +195,38 @@ Renderer::~Renderer() = default;
 
 void Renderer::set_model(const Model& model, const ExitOptions& options) {
   drawings_ = std::make_unique<Drawings>(model, options);
-  update_light();
+  light_changed_ = true;
 }
 
 void Renderer::set_lighting(const Lighting& lighting) {
   environment_ = make_environment_texture(lighting.environment);
   light_ = lighting.light;
-  update_light();
+  light_changed_ = true;
 }
 
 void Renderer::set_light_rotation(const Matrix4& world_from_light) {
   world_from_light_ = world_from_light;
-  update_light();
+  light_changed_ = true;
 }
 
 void Renderer::set_near_lights(std::vector<NearLight> lights, int grid_size) {
   near_lights_ = std::move(lights);
   grid_size_ = grid_size;
-  update_light();
+  light_changed_ = true;
 }
 
-void Renderer::update_light() {
+void Renderer::prepare(const View& view) {
   if (!drawings_) return;
-  LightGrid grid = drawings_->grid;
-  grid.size = grid_size_;
-  const sh::Light distant = sh::with_band_count(light_, drawings_->band_count);
-  drawings_->set_light(light_field(sh::rotated(distant, world_from_light_), near_lights_, grid));
+  if (std::exchange(light_changed_, false)) {
+    LightGrid grid = drawings_->grid;
+    grid.size = grid_size_;
+    const sh::Light distant = sh::with_band_count(light_, drawings_->band_count);
+    drawings_->set_light(light_field(sh::rotated(distant, world_from_light_), near_lights_, grid));
+    ++light_update_count_;
+  }
+  if (!can_draw(view.draw, view.show)) return;
+  sum_target_.bind();
+  drawings_->sum(view);
 }
 
 int Renderer::pass_count() const { return drawings_ ? drawings_->exit.layout().pass_count : 0; }
@@ -239,6 +253,7 @@ void Renderer::check_can_draw(Draw draw, Show show) const {
 }
 
 void Renderer::draw(const View& view, int width, int height, int samples) {
+  prepare(view);
   samples = std::clamp(samples, 1, std::max(gl::limits().max_samples, 1));
   if (width != frame_.width() || height != frame_.height() || samples != frame_samples_) {
     frame_ = gl::Target(float_format_, width, height, true, samples);

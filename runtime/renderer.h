@@ -60,6 +60,14 @@ class Renderer {
   /// kMaxGridSize. They are not turned.
   void set_near_lights(std::vector<NearLight> lights, int grid_size);
 
+  /// What draw() would do first of all: where light or model have changed, the work that follows
+  /// from it, once for all changes since, and the kept sums that the view needs.
+  void prepare(const View& view);
+  /// Whether the next prepare() has light to work on.
+  bool light_changed() const { return drawings_ && light_changed_; }
+  /// Changes of light that have been worked on.
+  int light_update_count() const { return light_update_count_; }
+
   bool can_draw(Draw draw, Show show) const;
   /// Throws Error (usage) saying which transfer is missing, or Error (failed) where the
   /// uncompressed one is too large for this OpenGL.
@@ -79,19 +87,21 @@ class Renderer {
 
  private:
   struct Drawings;
-  void update_light();
   void composite(const View& view, int output);
 
   gl::VertexArray no_attributes_;
   gl::Program composite_program_;
   gl::Format float_format_;
   gl::Target frame_;
+  gl::Target sum_target_;  // captures draw nothing, but need one
   int frame_samples_ = 0;
   gl::Texture environment_;
   sh::Light light_;
   std::vector<NearLight> near_lights_;
   int grid_size_ = 1;
   Matrix4 world_from_light_;
+  bool light_changed_ = false;
+  int light_update_count_ = 0;
   std::unique_ptr<Drawings> drawings_;
 };
 

@@ -139,7 +139,7 @@ void UncompressedDrawing::draw(const Viewpoint& viewpoint) const {
   });
 }
 
-bool UncompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+bool UncompressedDrawing::sum() {
   if (!kept_ || !kept_->make_room()) return false;
   if (!kept_->is_current()) {
     const gl::Program& program = sum_programs_.of(light_.varies());
@@ -149,6 +149,11 @@ bool UncompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
       gl::draw_points(0, vertex_count_);
     });
   }
+  return true;
+}
+
+bool UncompressedDrawing::draw_kept(const Viewpoint& viewpoint) {
+  if (!sum()) return false;
   kept_->draw(viewpoint);
   return true;
 }

@@ -152,5 +152,26 @@ TEST_P(EveryWay, ModelWithTooManyComponentsIsRefusedAndTheOldOneStays) {
   EXPECT_EQ(largest_difference(before, renderer_.render(view_of(good), kWidth, kHeight, 1)), 0.0f);
 }
 
+TEST_P(EveryWay, WorksOnceOnAllChangesOfLightBeforeAFrame) {
+  const mesh::Scene scene = scene_of({torus(20, 10)});
+  const auto transfer = random_transfer(scene.vertex_count(), 3, 3, 4, 2);
+  const Model model = make_model(scene, transfer, decompressed(transfer));
+  renderer_.set_model(model);
+  renderer_.set_lighting(lighting_from(test_light(3)));
+  renderer_.set_near_lights({{Vec3(9, 0, 0), 1.0f, Vec3(1)}}, 3);
+  renderer_.set_light_rotation(light_rotation(20));
+  EXPECT_TRUE(renderer_.light_changed());
+  EXPECT_EQ(renderer_.light_update_count(), 0);
+  const View view = view_of(model);
+  renderer_.draw(view, kWidth, kHeight, 1);
+  renderer_.draw(view, kWidth, kHeight, 1);
+  EXPECT_FALSE(renderer_.light_changed());
+  EXPECT_EQ(renderer_.light_update_count(), 1);
+  renderer_.set_light_rotation(light_rotation(40));
+  renderer_.prepare(view);
+  renderer_.draw(view, kWidth, kHeight, 1);
+  EXPECT_EQ(renderer_.light_update_count(), 2);
+}
+
 }  // namespace
 }  // namespace prt::runtime
