@@ -90,8 +90,11 @@ double Viewer::run() {
   double start_seconds = 0.0;
   const bool interactive = options_.screenshot.empty();
   while (!glfwWindowShouldClose(window_.handle())) {
+    if (interactive && !options_.animate && frame_count_ >= settled_frame_)
+      wait_for_events();
+    else
+      glfwPollEvents();
     const auto frame_start = Clock::now();
-    glfwPollEvents();
     draw_frame();
     if (!interactive &&
         frame_count_ + 1 >= static_cast<std::size_t>(options_.screenshot_frame_count)) {
@@ -107,6 +110,13 @@ double Viewer::run() {
   return start_seconds;
 }
 
+/// Any event can change what is shown; the panel takes some frames to show all that follows.
+void Viewer::wait_for_events() {
+  constexpr std::size_t kFramesToSettle = 3;
+  glfwWaitEvents();
+  settled_frame_ = frame_count_ + kFramesToSettle;
+}
+
 void Viewer::open(const fs::path& path) {
   try {
     const std::string kind = lower_extension(path);
@@ -116,6 +126,7 @@ void Viewer::open(const fs::path& path) {
       load_model_file(model_path_, path);
     else
       load_light_file(path);
+    renderer_.prepare(view_);
     message_.clear();
   } catch (const std::exception& error) {
     message_ = error.what();
@@ -169,10 +180,7 @@ void Viewer::load_light_file(const fs::path& path) {
 
 void Viewer::set_light_rotation(const Matrix4& world_from_light) {
   world_from_light_ = world_from_light;
-  const auto start = Clock::now();
   renderer_.set_light_rotation(world_from_light_);
-  light_change_milliseconds_ =
-      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 void Viewer::update_near_lights() {
@@ -184,8 +192,16 @@ void Viewer::update_near_lights() {
     lights.push_back({bounds_.center + direction * (lamp_.distance * bounds_.radius),
                       0.25f * bounds_.radius, Vec3(40.0f, 36.0f, 30.0f)});
   }
-  const auto start = Clock::now();
   renderer_.set_near_lights(std::move(lights), options_.grid_size);
+}
+
+/// To the end, kept sums and all, and without what OpenGL still had to do.
+void Viewer::follow_light() {
+  if (!renderer_.light_changed()) return;
+  gl::finish();
+  const auto start = Clock::now();
+  renderer_.prepare(view_);
+  gl::finish();
   light_change_milliseconds_ =
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -198,6 +214,7 @@ void Viewer::draw_frame() {
   animate();
   if (options_.panel) draw_panel();
   ImGui::Render();
+  follow_light();
   const gl::Window::Size size = window_.framebuffer_size();
   if (size.width > 0 && size.height > 0) {  // not minimised
     view_.camera = orbit_.camera(static_cast<float>(size.width) / static_cast<float>(size.height));

@@ -61,6 +61,10 @@ class Viewer {
   /// why.
   void open(const std::filesystem::path& path);
   const std::string& message() const { return message_; }
+  /// Drawn by run() so far. A window in which nothing moves is not drawn again until an event.
+  std::size_t frame_count() const { return frame_count_; }
+  /// That the last change of light took, sums that are kept and OpenGL's part among it.
+  double light_change_milliseconds() const { return light_change_milliseconds_; }
   /// What the panel says of the model.
   const std::string& model_text() const { return model_text_; }
   /// The distant light as it is damped against ringing, before it is turned.
@@ -79,6 +83,8 @@ class Viewer {
   void turn_light(float dx, float dy);
   void animate();
   void update_near_lights();
+  void follow_light();
+  void wait_for_events();
   void set_light_rotation(const Matrix4& world_from_light);
   void write_screenshot() const;
 
@@ -105,6 +111,7 @@ class Viewer {
   } lamp_;
   std::array<float, kTimingCount> frame_milliseconds_{};
   std::size_t frame_count_ = 0;
+  std::size_t settled_frame_ = 3;  // from then on nothing moves until something happens
   double light_change_milliseconds_ = 0.0;
 };
 

@@ -85,8 +85,9 @@ void Viewer::animate() {
     options_.animate = !options_.animate;
   if (!options_.animate) return;
   constexpr float kRadiansPerSecond = 0.5f;
-  set_light_rotation(
-      turned(world_from_light_, Vec3(0, 1, 0), kRadiansPerSecond * ImGui::GetIO().DeltaTime));
+  constexpr float kLongestStep = 0.1f;  // seconds; the window may have waited before
+  set_light_rotation(turned(world_from_light_, Vec3(0, 1, 0),
+                            kRadiansPerSecond * std::min(kLongestStep, ImGui::GetIO().DeltaTime)));
 }
 
 void Viewer::draw_light_controls() {
@@ -161,7 +162,7 @@ void Viewer::draw_timings() {
   ImGui::PlotLines("Frame", frame_milliseconds_.data(), static_cast<int>(kTimingCount),
                    static_cast<int>(frame_count_ % kTimingCount), text.c_str(), 0.0f,
                    1.2f * slowest, {240, 48});
-  ImGui::Text("Last light change: %.2f ms on the CPU", light_change_milliseconds_);
+  ImGui::Text("Last light change: %.2f ms", light_change_milliseconds_);
 }
 
 }  // namespace prt::runtime

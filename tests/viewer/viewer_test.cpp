@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+// GLFW's functions alone: OpenGL is the library's.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <thread>
 
 #include "core/error.h"
 #include "gltf/document.h"
@@ -240,6 +246,42 @@ TEST_F(ViewerTest, PanelHasTheColoursOfTheErrorHeatMap) {
     EXPECT_EQ(count_of(bare, error), 0u) << error;
     EXPECT_GT(count_of(with_panel, error), 10u) << error;
   }
+}
+
+/// Closes the window after a while, as its user would.
+class LateClose {
+ public:
+  explicit LateClose(std::chrono::milliseconds after)
+      : thread_([after, window = glfwGetCurrentContext()] {
+          std::this_thread::sleep_for(after);
+          glfwSetWindowShouldClose(window, GLFW_TRUE);
+          glfwPostEmptyEvent();
+        }) {}
+  ~LateClose() { thread_.join(); }
+
+ private:
+  std::thread thread_;
+};
+
+TEST_F(ViewerTest, DrawsNothingWhileNothingMoves) {
+  options_.screenshot.clear();
+  const auto frame_count = [&](bool animate) {
+    options_.animate = animate;
+    Viewer viewer(options_);
+    const LateClose close(std::chrono::milliseconds(1000));
+    viewer.run();
+    return viewer.frame_count();
+  };
+  const std::size_t idle = frame_count(false), moving = frame_count(true);
+  EXPECT_GE(idle, 3u);
+  EXPECT_LT(2 * idle, moving);
+}
+
+TEST_F(ViewerTest, TimesWhatFollowsFromTheLight) {
+  Viewer viewer(options_);
+  EXPECT_EQ(viewer.light_change_milliseconds(), 0.0);  // it is not worked on before a frame
+  viewer.run();
+  EXPECT_GT(viewer.light_change_milliseconds(), 0.0);
 }
 
 TEST_F(ViewerTest, OpensWithoutAModel) {
