@@ -4,6 +4,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "core/stopwatch.h"
 #include "gl/context.h"
@@ -120,12 +121,14 @@ void render(const RenderOptions& options, Report& report) {
   renderer.set_near_lights(options.near_lights, options.grid_size);
   turn_light(renderer, view, picture.light_rotation, report);
   stage.emplace(report, "draw");
+  const bool tone_mapped =
+      options.show == Show::radiance && lower_extension(picture.output) == ".png";
   const image::Image image =
-      renderer.render(view, picture.width, picture.height, options.sample_count);
+      renderer.render(view, picture.width, picture.height, options.sample_count, tone_mapped);
   stage.emplace(report, "write");
   write_picture(picture.output, image,
                 {.exposure = picture.exposure,
-                 .tone_mapped = options.show == Show::radiance,
+                 .tone_mapped = false,  // it is, or must not be
                  .transparent = view.background == Background::none},
                 picture.no_clobber);
   stage.reset();

@@ -20,7 +20,7 @@ namespace prt::runtime {
 namespace {
 
 // Of composite.frag.
-enum Output { kLinear = 0, kSrgb = 1, kToneMapped = 2 };
+enum Output { kLinear = 0, kSrgb = 1, kToneMapped = 2, kToneMappedLinear = 3 };
 
 /// Means of blocks of `factor`² pixels, the last ones of a row or column smaller.
 image::Image reduced(const image::Image& map, int factor) {
@@ -187,6 +187,8 @@ Renderer::Renderer(gl::Format float_format)
     : composite_program_("fullscreen.vert", "composite.frag"),
       float_format_(float_format),
       sum_target_(float_format, 1, 1, false, 1) {
+  if (gl::limits().sample_textures)
+    sample_program_.emplace("fullscreen.vert", "composite.frag", gl::Defines{"SAMPLES"});
   const float black[4] = {0.0f, 0.0f, 0.0f, 1.0f};
   environment_ = gl::Texture(gl::Format::rgba32f, 1, 1, black);
 }
@@ -267,7 +269,6 @@ void Renderer::draw(const View& view, int width, int height, int samples) {
     drawings_->draw(view, samples);
     glDisable(GL_DEPTH_TEST);
   }
-  frame_.resolve();
   gl::check_errors("drawing the model");
 }
 
@@ -275,7 +276,9 @@ void Renderer::composite(const View& view, int output) {
   const camera::Camera::Axes axes = view.camera.axes();
   const float tangent = std::tan(view.camera.vertical_fov * std::numbers::pi_v<float> / 360.0f);
   const Matrix4 light_from_world = world_from_light_.transposed();
-  const gl::Program& program = composite_program_;
+  const bool by_sample = output >= kToneMapped && frame_samples_ > 1 && sample_program_;
+  const gl::Program& program = by_sample ? *sample_program_ : composite_program_;
+  if (!by_sample) frame_.resolve();
   program.use();
   program.set("u_scene", 0);
   program.set("u_environment", 1);
@@ -287,7 +290,12 @@ void Renderer::composite(const View& view, int output) {
   program.set("u_ray_forward", transform_vector(light_from_world, -axes.backward));
   program.set("u_output", output);
   program.set("u_exposure", std::exp2(view.exposure));
-  frame_.color().bind(0);
+  if (by_sample) {
+    program.set("u_sample_count", frame_samples_);
+    frame_.bind_samples(0);
+  } else {
+    frame_.color().bind(0);
+  }
   environment_.bind(1);
   gl::draw_fullscreen(no_attributes_);
   gl::check_errors("developing the picture");
@@ -297,11 +305,12 @@ void Renderer::develop(const View& view) {
   composite(view, view.show == Show::radiance ? kToneMapped : kSrgb);
 }
 
-image::Image Renderer::render(const View& view, int width, int height, int samples) {
+image::Image Renderer::render(const View& view, int width, int height, int samples,
+                              bool tone_mapped) {
   draw(view, width, height, samples);
   const gl::Target composed(float_format_, width, height, false, 1);
   composed.bind();
-  composite(view, kLinear);
+  composite(view, tone_mapped ? kToneMappedLinear : kLinear);
   image::Image upside_down(width, height, 4), image(width, height, 4);
   composed.read(upside_down.pixels);
   for (int y = 0; y < height; ++y)

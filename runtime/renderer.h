@@ -79,11 +79,14 @@ class Renderer {
   /// background. `samples` in a pixel, cut to what the driver has; 1: at pixel centres.
   void draw(const View& view, int width, int height, int samples);
   /// Puts the background behind the last frame and develops it into the bound framebuffer of the
-  /// same size.
+  /// same size: sample by sample where the driver lets shaders read them (OpenGL, not OpenGL ES),
+  /// so that edges of what is much brighter than white are smooth.
   void develop(const View& view);
 
   /// Draws and returns linear RGBA with the background composed; alpha is the model's coverage.
-  image::Image render(const View& view, int width, int height, int samples);
+  /// `tone_mapped`: exposed and tone mapped as develop() does it, but not put on the sRGB curve.
+  image::Image render(const View& view, int width, int height, int samples,
+                      bool tone_mapped = false);
 
  private:
   struct Drawings;
@@ -91,6 +94,7 @@ class Renderer {
 
   gl::VertexArray no_attributes_;
   gl::Program composite_program_;
+  std::optional<gl::Program> sample_program_;  // the same, of each sample, where that can be
   gl::Format float_format_;
   gl::Target frame_;
   gl::Target sum_target_;  // captures draw nothing, but need one

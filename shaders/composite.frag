@@ -4,12 +4,18 @@
 
 in vec2 v_ndc;
 
-uniform sampler2D u_scene;        // linear, premultiplied by coverage
+// Linear, premultiplied by coverage.
+#ifdef SAMPLES
+uniform highp sampler2DMS u_scene;
+uniform int u_sample_count;
+#else
+uniform sampler2D u_scene;
+#endif
 uniform sampler2D u_environment;  // latitude-longitude
 uniform int u_background;         // 0: none, 1: colour, 2: environment
 uniform vec3 u_background_color;
 uniform vec3 u_ray_right, u_ray_up, u_ray_forward;  // in the environment's frame
-uniform int u_output;                               // 0: linear, 1: sRGB, 2: tone mapped sRGB
+uniform int u_output;                               // 0: linear, 1: sRGB, 2: tone mapped sRGB, 3: tone mapped
 uniform float u_exposure;                           // factor
 
 out vec4 o_color;
@@ -21,9 +27,29 @@ vec3 background() {
   return environment_radiance(u_environment, normalize(ray));
 }
 
+// What is seen of linear radiance that is premultiplied by coverage, before the sRGB curve.
+vec4 developed(vec4 color, vec3 behind) {
+  color.rgb += (1.0 - color.a) * behind;
+  if (u_output >= 2) color.rgb = tone_map(u_exposure * color.rgb);
+  return color;
+}
+
 void main() {
-  o_color = texelFetch(u_scene, ivec2(gl_FragCoord.xy), 0);
-  if (o_color.a < 1.0) o_color.rgb += (1.0 - o_color.a) * background();
-  if (u_output == 2) o_color.rgb = tone_map(u_exposure * o_color.rgb);
-  if (u_output != 0) o_color = vec4(srgb_encode(o_color.rgb), 1.0);
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+#ifdef SAMPLES
+  // The mean of what is seen: that of radiance would show an edge of something many times as bright
+  // as white without any steps between, as if it had one sample.
+  vec3 behind = background();
+  vec4 sum = vec4(0.0), scene = vec4(0.0), color = developed(scene, behind);
+  for (int i = 0; i < u_sample_count; ++i) {
+    vec4 other = texelFetch(u_scene, pixel, i);
+    if (other != scene) color = developed(scene = other, behind);
+    sum += color;
+  }
+  o_color = sum / float(u_sample_count);
+#else
+  vec4 scene = texelFetch(u_scene, pixel, 0);
+  o_color = developed(scene, scene.a < 1.0 ? background() : vec3(0.0));
+#endif
+  if (u_output == 1 || u_output == 2) o_color = vec4(srgb_encode(o_color.rgb), 1.0);
 }

@@ -78,6 +78,7 @@ Limits limits() {
   limits.unorm16_textures =
       epoxy_is_desktop_gl() || epoxy_has_gl_extension("GL_EXT_texture_norm16");
   limits.max_samples = max_samples_of(limits.float32_targets ? GL_RGBA32F : GL_RGBA16F);
+  limits.sample_textures = epoxy_is_desktop_gl();
   return limits;
 }
 

@@ -60,6 +60,7 @@ struct Limits {
   bool float32_filters;            ///< RGBA32F can be filtered
   bool unorm16_textures;           ///< normalised integers of 16 bits can be textures
   int max_samples;                 ///< of the colour format that targets use
+  bool sample_textures;            ///< shaders can read the samples of a target one by one
 };
 Limits limits();
 

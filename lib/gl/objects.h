@@ -143,7 +143,7 @@ class TextureArray {
 };
 
 /// A colour texture, and when asked depth and multisampling (resolve() then brings the samples'
-/// mean into the texture).
+/// mean into the texture, and everything drawn goes where it went before).
 class Target {
  public:
   Target() = default;
@@ -152,6 +152,8 @@ class Target {
   void bind() const;
   void resolve() const;
   const Texture& color() const { return color_; }
+  /// The samples as a sampler2DMS; with multisampling, where Limits::sample_textures.
+  void bind_samples(int unit) const;
   int width() const { return color_.width(); }
   int height() const { return color_.height(); }
   /// The resolved colours, width × height × 4 floats, bottom row first.
@@ -161,6 +163,7 @@ class Target {
   Texture color_;
   Name<delete_framebuffer> framebuffer_;
   Name<delete_renderbuffer> samples_, depth_;
+  Name<delete_texture> sample_texture_;  // instead of samples_ where it can be
   Name<delete_framebuffer> sample_framebuffer_;
 };
 

@@ -22,6 +22,14 @@ unsigned int make_renderbuffer(GLenum format, int samples, int width, int height
   return name;
 }
 
+unsigned int make_sample_texture(GLenum format, int samples, int width, int height) {
+  GLuint name = 0;
+  glGenTextures(1, &name);
+  glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, name);
+  glTexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, format, width, height, GL_TRUE);
+  return name;
+}
+
 unsigned int make_framebuffer() {
   GLuint name = 0;
   glGenFramebuffers(1, &name);
@@ -49,9 +57,16 @@ Target::Target(Format format, int width, int height, bool depth, int samples)
   if (samples > 1) {
     check_complete();
     sample_framebuffer_ = Name<delete_framebuffer>(make_framebuffer());
-    samples_ =
-        Name<delete_renderbuffer>(make_renderbuffer(sized_format(format), samples, width, height));
-    attach(GL_COLOR_ATTACHMENT0, samples_.get());
+    if (limits().sample_textures) {
+      sample_texture_ =
+          Name<delete_texture>(make_sample_texture(sized_format(format), samples, width, height));
+      glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE,
+                             sample_texture_.get(), 0);
+    } else {
+      samples_ = Name<delete_renderbuffer>(
+          make_renderbuffer(sized_format(format), samples, width, height));
+      attach(GL_COLOR_ATTACHMENT0, samples_.get());
+    }
   }
   if (depth) {
     depth_ =
@@ -70,10 +85,18 @@ void Target::bind() const {
 
 void Target::resolve() const {
   if (sample_framebuffer_.get() == 0) return;
+  GLint drawn = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, sample_framebuffer_.get());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
   glBlitFramebuffer(0, 0, width(), height(), 0, 0, width(), height(), GL_COLOR_BUFFER_BIT,
                     GL_NEAREST);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(drawn));
+}
+
+void Target::bind_samples(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, sample_texture_.get());
 }
 
 void Target::read(std::span<float> pixels) const {

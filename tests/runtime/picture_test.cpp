@@ -77,6 +77,23 @@ TEST_P(Picture, AlphaIsCoverageAndSamplesSmoothIt) {
   }
 }
 
+TEST_P(Picture, EdgesOfWhatIsMuchBrighterThanWhiteAreSmooth) {
+  if (!gl::limits().sample_textures || gl::limits().max_samples < 4) return;
+  const mesh::Scene scene = scene_of({sphere(24, 32)});
+  const Model model = make_model(scene, {}, unshadowed(scene, 2, {{1, 0, 0}}));
+  View view = view_of(model);
+  view.draw = Draw::uncompressed;
+  view.background = Background::color;  // black
+  renderer_.set_model(model);
+  renderer_.set_lighting(lighting_from(sh::constant_light(2, Vec3(500))));
+  const image::Image linear = renderer_.render(view, kWidth, kHeight, 4);
+  const image::Image shown = renderer_.render(view, kWidth, kHeight, 4, true);
+  for (std::size_t i = 0; i < shown.pixels.size(); i += 4) {
+    EXPECT_EQ(shown.pixels[i + 3], linear.pixels[i + 3]);
+    EXPECT_NEAR(shown.pixels[i], shown.pixels[i + 3], 0.02f);  // a white sphere's coverage
+  }
+}
+
 TEST_P(Picture, BackFacesAreBlackAndCovered) {
   mesh::TriangleMesh inside_out = sphere(24, 32);
   for (std::size_t i = 0; i < inside_out.indices.size(); i += 3)
