@@ -9,12 +9,18 @@ namespace {
 
 constexpr unsigned int kPlaceLocation = 1;
 
+/// Rounded up to full rows of a table.
+std::size_t in_rows(std::size_t count) {
+  constexpr std::size_t kRow = gl::Table::kRowLength;
+  return (count + kRow - 1) / kRow * kRow;
+}
+
 }  // namespace
 
 bool ExitBuffer::fits(const ExitLayout& layout, std::size_t vertex_count) {
   const std::size_t vectors = layout.color_vector_count();
   return static_cast<int>(vectors) <= gl::limits().max_captured_vectors &&
-         gl::Table::fits(vertex_count * layout.color_count() * vectors);
+         gl::Table::fits(layout.color_count() * in_rows(vertex_count * vectors));
 }
 
 gl::Program ExitBuffer::capturing(const char* vertex_shader, const gl::Defines& defines) {
@@ -38,15 +44,11 @@ std::size_t ExitBuffer::color_size() const {
   return vertex_count_ * exit_.layout().color_vector_count();
 }
 
-std::size_t ExitBuffer::byte_count() const {
-  return exit_.layout().color_count() * color_size() * sizeof(Vec4);
-}
-
 bool ExitBuffer::make_room() {
   if (has_no_room_ || table_.count() > 0) return !has_no_room_;
   try {
-    captured_ = gl::Buffer(byte_count());
-    table_ = gl::Table(byte_count() / sizeof(Vec4));
+    captured_ = gl::Buffer(color_size() * sizeof(Vec4));
+    table_ = gl::Table(exit_.layout().color_count() * in_rows(color_size()));
   } catch (const Error& error) {
     log::warning("no room to keep what {} vertices send, which is summed in every frame: {}",
                  vertex_count_, error.what());
@@ -59,17 +61,18 @@ bool ExitBuffer::make_room() {
 }
 
 void ExitBuffer::fill(const std::function<void(int color)>& draw_points) {
-  const std::size_t color_bytes = color_size() * sizeof(Vec4);
   for (std::size_t color = 0; color < exit_.layout().color_count(); ++color) {
-    const gl::Capture capture(captured_, color * color_bytes, color_bytes);
-    draw_points(static_cast<int>(color));
+    {
+      const gl::Capture capture(captured_, 0, color_size() * sizeof(Vec4));
+      draw_points(static_cast<int>(color));
+    }
+    table_.upload(captured_, color * in_rows(color_size()), color_size());
   }
-  table_.upload(captured_);
   is_current_ = true;
 }
 
 void ExitBuffer::draw(const Viewpoint& viewpoint) const {
-  const auto size = static_cast<int>(color_size());
+  const auto size = static_cast<int>(in_rows(color_size()));
   program_.use();
   exit_.bind(program_, viewpoint);
   program_.set("u_exit", 0);

@@ -41,15 +41,14 @@ class ExitBuffer {
 
  private:
   std::size_t color_size() const;
-  std::size_t byte_count() const;
 
   const ExitStage& exit_;
   std::size_t vertex_count_, index_count_;
   gl::Buffer places_;
   gl::VertexArray array_;
   gl::Program program_;
-  gl::Buffer captured_;
-  gl::Table table_;  // colour by colour, vertex by vertex
+  gl::Buffer captured_;  // one colour
+  gl::Table table_;      // colour by colour, each from the start of a row, vertex by vertex
   bool is_current_ = false;
   bool has_no_room_ = false;
 };

@@ -6,7 +6,7 @@
 layout(location = 1) in uint a_place;  // among the captured vertices
 
 uniform sampler2D u_exit;  // colour by colour, vertex by vertex
-uniform int u_color_size;  // vec4 of a colour
+uniform int u_color_size;  // vec4 from a colour to the next
 uniform int u_first;       // of the pass
 
 void main() {

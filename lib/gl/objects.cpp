@@ -39,7 +39,7 @@ ScalarType type_of(Scalar scalar) {
 }
 
 /// A constant power of two, so that the shader need not divide; OpenGL ES 3.0 promises as much.
-constexpr std::size_t kTableRowLength = 2048;
+constexpr std::size_t kTableRowLength = Table::kRowLength;
 
 std::size_t table_height(std::size_t count) {
   return std::max<std::size_t>((count + kTableRowLength - 1) / kTableRowLength, 1);
@@ -141,28 +141,33 @@ Table::Table(std::size_t count, Scalar scalar)
 
 void Table::upload(std::span<const std::byte> values) {
   if (values.size() != count_ * 4 * type_of(scalar_).bytes) throw_failed("a table keeps its size");
-  copy(reinterpret_cast<std::uintptr_t>(values.data()));
+  copy(reinterpret_cast<std::uintptr_t>(values.data()), 0, count_);
 }
 
-void Table::upload(const Buffer& buffer) {
+void Table::upload(const Buffer& buffer, std::size_t first, std::size_t count) {
+  if (first % kRowLength != 0 || first + count > count_)
+    throw_failed("a part of a table begins within a row or goes beyond its end");
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.name());
-  copy(0);
+  copy(0, first, count);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
-/// From an address, or from a place in the bound buffer.
-void Table::copy(std::uintptr_t first) {
+/// From an address, or from a place in the bound buffer. Bound textures stay bound.
+void Table::copy(std::uintptr_t source, std::size_t first, std::size_t count) {
+  GLint bound = 0;
+  glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
   glBindTexture(GL_TEXTURE_2D, name());
   const ScalarType type = type_of(scalar_);
-  const std::size_t full_rows = count_ / kTableRowLength, rest = count_ % kTableRowLength;
+  const std::size_t full_rows = count / kRowLength, rest = count % kRowLength;
   const auto put = [&](std::size_t row, std::size_t width, std::size_t height) {
     if (width == 0 || height == 0) return;
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(row), static_cast<GLsizei>(width),
-                    static_cast<GLsizei>(height), GL_RGBA, type.type,
-                    byte_offset(first + row * kTableRowLength * 4 * type.bytes));
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(first / kRowLength + row),
+                    static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA, type.type,
+                    byte_offset(source + row * kRowLength * 4 * type.bytes));
   };
-  put(0, kTableRowLength, full_rows);
+  put(0, kRowLength, full_rows);
   put(full_rows, rest, 1);
+  glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
   check_errors("uploading a table");
 }
 

@@ -98,20 +98,23 @@ class Texture {
 /// i / 2048) of a texture; table.glsl has the fetch.
 class Table : public Texture {
  public:
+  static constexpr std::size_t kRowLength = 2048;
+
   Table() = default;
   /// unorm16 only where Limits says so.
   explicit Table(std::size_t count, Scalar scalar = Scalar::float32);
   /// All elements; the same number as at construction.
   void upload(std::span<const Vec4> values) { upload(std::as_bytes(values)); }
   void upload(std::span<const std::byte> values);
-  /// The same from a buffer of so many elements, inside of OpenGL.
-  void upload(const Buffer& buffer);
+  /// The first `count` elements of a buffer, inside of OpenGL, to element `first` on, where a row
+  /// begins (kRowLength).
+  void upload(const Buffer& buffer, std::size_t first, std::size_t count);
   std::size_t count() const { return count_; }
   /// Whether a table of so many elements is within the limits of this OpenGL.
   static bool fits(std::size_t count);
 
  private:
-  void copy(std::uintptr_t first);
+  void copy(std::uintptr_t source, std::size_t first, std::size_t count);
 
   std::size_t count_ = 0;
   Scalar scalar_ = Scalar::float32;

@@ -84,7 +84,7 @@ TEST_P(EveryApi, CaptureKeepsWhatAVertexShaderOutputs) {
   const Program program("fullscreen.vert", "black.frag", {}, "v_ndc");
   const VertexArray none;
   const Buffer buffer(4 * 2 * sizeof(float));
-  const Target target(limits().float32_targets ? Format::rgba32f : Format::rgba16f, 2, 1, false, 1);
+  const Target target(limits().float32_targets ? Format::rgba32f : Format::rgba16f, 2, 2, false, 1);
   target.bind();
   {
     none.bind();
@@ -92,16 +92,20 @@ TEST_P(EveryApi, CaptureKeepsWhatAVertexShaderOutputs) {
     const Capture capture(buffer, 0, 4 * 2 * sizeof(float));
     draw_points(0, 4);
   }
-  Table table(2);
-  table.upload(buffer);
+  Table table(Table::kRowLength + 2);
+  const std::vector<float> zeros(4 * table.count());
+  table.upload(std::as_bytes(std::span(zeros)));
+  EXPECT_THROW(table.upload(buffer, 1, 2), Error);
+  EXPECT_THROW(table.upload(buffer, Table::kRowLength, 3), Error);
+  table.upload(buffer, Table::kRowLength, 2);
   const Program copy("fullscreen.vert", "composite.frag");
   copy.use();
   copy.set("u_scene", 0);
   table.bind(0);
   draw_fullscreen(none);
-  std::vector<float> read(8);
+  std::vector<float> read(16);
   target.read(read);
-  EXPECT_EQ(read, (std::vector<float>{-1, -1, 3, -1, -1, 3, 3, 3}));
+  EXPECT_EQ(read, (std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0, -1, -1, 3, -1, -1, 3, 3, 3}));
 }
 
 TEST_P(EveryApi, OversizedTextureIsAnErrorThatSaysTheLimit) {
