@@ -87,8 +87,8 @@ class Search::State {
     survey_ = make_survey(first_aim(bound_), method_, signal_, dimension_, options_);
     flops_ = survey_->flops;
     if (survey_->equal_rows) {
-      log::info("{} points have {} different rows: {} clusters are exact", size_.point_count,
-                survey_->equal_rows->count(), survey_->equal_rows->count());
+      log::info("{} points have {} different rows, for each of which a cluster would be exact",
+                size_.point_count, survey_->equal_rows->count());
     }
     stages_.push_back({"survey", stopwatch.seconds()});
   }
@@ -166,8 +166,10 @@ class Search::State {
       const Method method = step.exact == Exact::one_cluster ? Method::fixed : method_;
       return encode(method, signal_, dimension_, options);
     }
+    Options alike = options;
+    alike.point_weights = {};  // the same means, also of points that weigh nothing
     Encoded encoded;
-    encoded.encoding = fit(signal_, dimension_, survey_->equal_rows->labels, options);
+    encoded.encoding = fit(signal_, dimension_, survey_->equal_rows->labels, alike);
     encoded.flops = static_cast<double>(signal_.size());  // of the means
     return encoded;
   }

@@ -63,7 +63,8 @@ Strategy::Strategy(const Bound& bound, double budget, const Size& size, Survey& 
 std::optional<Step> Strategy::next(double spent) {
   spent_ = spent;
   // Beyond the rounding of floats nothing is more exact.
-  if (!best_ && bound_.max_error && has_tried(exact_choice())) return std::nullopt;
+  const bool is_exact = exact_of(exact_choice()) != Exact::none;
+  if (!best_ && bound_.max_error && is_exact && has_tried(exact_choice())) return std::nullopt;
   const std::optional<Choice> choice = choose_next();
   if (!choice) return last_resort();
   const Exact exact = exact_of(*choice);
@@ -116,7 +117,8 @@ Choice Strategy::choose_aim() const {
   if (!survey_.equal_rows || bytes(exact_choice()) > static_cast<double>(aim_.most_bytes(size_)))
     return least;
   const bool is_within = survey_.model.error(least) <= aim_.max_error.value_or(kExact);
-  return is_within && bytes(least) < bytes(exact_choice()) ? least : exact_choice();
+  const double worthwhile = (1.0 - kWorthwhile) * bytes(exact_choice());
+  return is_within && bytes(least) < worthwhile ? least : exact_choice();
 }
 
 /// Of encodings with the same number of vectors tighten() leaves the clusters that they need.
@@ -296,7 +298,7 @@ Exact Strategy::exact_of(const Choice& choice) const {
   return is_whole && bound_.max_error ? Exact::one_cluster : Exact::none;
 }
 
-/// As exact as it gets.
+/// As exact as it gets, be it with fewer vectors than all.
 Choice Strategy::exact_choice() const {
   return survey_.equal_rows ? Choice{survey_.equal_rows->count(), 0} : bound_.cost.whole(size_);
 }

@@ -77,6 +77,7 @@ Survey make_survey(const Bound& bound, Method method, std::span<const float> sig
   survey.sampled_count = sample_count(size.point_count);
   const auto most_rows =
       std::min(survey.sampled_count - 1, static_cast<std::size_t>(most_clusters(size.point_count)));
+  // How many points are like a row is no part of the largest error of one.
   if (bound.norm == Norm::rmse) survey.equal_rows = find_equal_rows(signal, n, most_rows);
   if (survey.equal_rows) survey.sampled_count = size.point_count;
   const Sample sample = survey.equal_rows ? make_sample(signal, n, options, *survey.equal_rows)

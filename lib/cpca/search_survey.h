@@ -31,7 +31,7 @@ struct Survey {
 /// chosen, as far as the first of them tell. Static encodings tell the errors of all numbers of
 /// vectors at once, as every vector takes its share from the error of a point; iterative ones make
 /// them one after the other. Of signals with fewer different rows than the sample would have
-/// points, these are the sample, unless errors are the largest of a point.
+/// points, these are the sample.
 Survey make_survey(const Bound& bound, Method method, std::span<const float> signal, int dimension,
                    const Options& options);
 

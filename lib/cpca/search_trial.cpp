@@ -20,14 +20,9 @@ void reject(const Bound& bound, std::span<const Trial> trials) {
   const auto least =
       std::min_element(trials.begin(), trials.end(),
                        [](const Trial& a, const Trial& b) { return a.error < b.error; });
-  if (bound.max_error) {
-    throw_failed("no encoding found within the error",
-                 {.found = fmt::format("a relative error of {:.4g}", least->error),
-                  .expected = fmt::format("at most {:.4g}", *bound.max_error)});
-  }
-  throw_failed("no encoding found that is as small",
-               {.expected = fmt::format("at most {} bytes", *bound.max_bytes),
-                .advice = "Take --method iterative."});
+  throw_failed("no encoding found within the error",
+               {.found = fmt::format("a relative error of {:.4g}", least->error),
+                .expected = fmt::format("at most {:.4g}", *bound.max_error)});
 }
 
 }  // namespace prt::cpca

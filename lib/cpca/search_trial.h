@@ -22,7 +22,7 @@ struct Trial {
 
 void log_trial(const Trial& trial);
 
-/// Throws the Error (failed) of a search whose trials, at least one, are all beyond the bound.
+/// Throws the Error (failed) of a search whose trials, at least one, are all beyond max_error.
 [[noreturn]] void reject(const Bound& bound, std::span<const Trial> trials);
 
 }  // namespace prt::cpca

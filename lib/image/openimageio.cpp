@@ -2,6 +2,9 @@
 
 #include <dlfcn.h>
 
+#include <string>
+#include <string_view>
+
 #include "core/error.h"
 
 namespace prt::image {
@@ -13,7 +16,14 @@ const OpenImageIo& load() {
   void* library = dlopen(kFile, RTLD_LAZY | RTLD_LOCAL);
   const void* calls = library ? dlsym(library, "prtkit_openimageio") : nullptr;
   if (!calls) throw_failed("OpenImageIO cannot be loaded", {.found = dlerror()});
-  return *static_cast<const OpenImageIo*>(calls);
+  const auto& loaded = *static_cast<const OpenImageIo*>(calls);
+  if (std::string_view(loaded.version) != PRTKIT_VERSION) {
+    throw_failed("OpenImageIO cannot be loaded", {.file = kFile,
+                                                  .found = std::string("version ") + loaded.version,
+                                                  .expected = PRTKIT_VERSION,
+                                                  .advice = "Install prtkit anew."});
+  }
+  return loaded;
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct FileLayout {
 constexpr int kMaxChannels = 4;
 
 struct OpenImageIo {
+  const char* version;  ///< of prtkit: of another this may look otherwise
   /// The first kMaxChannels channels of a file whose format OpenImageIO calls `format`, as stored.
   /// `check` throws if it does not want pixels of that layout. What is wrong with the file is
   /// thrown as std::runtime_error. `name` is for messages.

@@ -92,6 +92,51 @@ TEST(EncodeWithin, TakesAClusterForEachOfAFewRows) {
   }
 }
 
+// Their mean by weights would be 0.
+TEST(EncodeWithin, IsExactForRowsThatWeighNothing) {
+  const auto signal = repeat_rows(7, 600, 25);
+  const EqualRows rows = *find_equal_rows(signal, 25, 7);
+  std::vector<float> weights(600, 1.0f);
+  for (std::size_t p = 0; p < weights.size(); ++p) {
+    if (rows.labels[p] == 3) weights[p] = 0.0f;
+  }
+  const Found found = encode_within({.max_error = 0.001, .max_bytes = {}}, Method::iterative,
+                                    signal, 25, {.point_weights = weights});
+  if (found.trials[found.kept].choice == Choice{7, 0}) {
+    EXPECT_EQ(relative_error(found.encoded.encoding, signal, Norm::rmse), 0.0);
+  }
+  EXPECT_LE(relative_error(found.encoded.encoding, signal, Norm::rmse, weights), 0.001);
+}
+
+// With fewer vectors than all it is not exact, and others may do.
+TEST(EncodeWithin, GoesOnAfterOneClusterOfAsManyVectorsAsThereMayBe) {
+  constexpr std::size_t kCount = 900, kRank = 10;
+  const auto weights = random_values(kCount * kRank, 41),
+             axes = random_values(kRank * kExactDimension, 42);
+  std::vector<float> signal = random_values(kCount * kExactDimension, 43);
+  for (std::size_t p = 0; p < kCount; ++p) {
+    for (std::size_t i = 0; i < kExactDimension; ++i) {
+      float& value = signal[p * kExactDimension + i];
+      value *= 0.1f;
+      for (std::size_t r = 0; r < kRank; ++r) {
+        value += weights[p * kRank + r] * axes[r * kExactDimension + i];
+      }
+    }
+  }
+  const Encoding one =
+      encode_static(signal, kExactDimension, {.cluster_count = 1, .component_count = 8}).encoding;
+  const double error = relative_error(one, signal, Norm::rmse);
+  for (const Method method : {Method::iterative, Method::adaptive}) {
+    for (const double share : {0.995, 0.985, 0.95}) {
+      const Bound bound{
+          .max_error = share * error, .max_bytes = {}, .cost = {.max_component_count = 8}};
+      const Found found = encode_within(bound, method, signal, kExactDimension,
+                                        {.iterations = 8, .max_component_count = 8});
+      EXPECT_LE(relative_error(found.encoded.encoding, signal, Norm::rmse), share * error);
+    }
+  }
+}
+
 TEST(EncodeWithin, TakesFewerClustersThanRowsWhereErrorsMayBe) {
   const auto signal = repeat_rows(40, 1000, 50);
   const Bound bound{.max_error = 0.4, .max_bytes = {}};

@@ -62,4 +62,4 @@ std::vector<unsigned char> encode(const Image& image, std::span<const std::uint8
 
 }  // namespace
 
-extern "C" const OpenImageIo prtkit_openimageio{decode, encode};
+extern "C" const OpenImageIo prtkit_openimageio{PRTKIT_VERSION, decode, encode};
