@@ -12,8 +12,8 @@
 #include "image/image.h"
 #include "sample_files.h"
 #include "sh/light.h"
-#include "signal/npz.h"
 #include "sh/radiance_metric.h"
+#include "signal/npz.h"
 
 namespace prt::inspect {
 namespace {
