@@ -64,11 +64,11 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count) {
   return {std::move(light), std::move(map), true};
 }
 
-sh::WindowedLight damp(Lighting& lighting, std::optional<sh::Window> window) {
+sh::WindowedLight damp(Lighting& lighting, std::optional<sh::Window> window, bool is_lamp) {
   constexpr double kMostNegative = 0.05;
   sh::WindowedLight damped = sh::windowed(lighting.light, window.value_or(sh::Window::none));
   lighting.light = damped.light;
-  if (!window && damped.ringing.negative_fraction > kMostNegative)
+  if (!window && !is_lamp && damped.ringing.negative_fraction > kMostNegative)
     log::warning(
         "the light rings: negative over {:.0f}% of the sphere, down to {:.2g} of its mean; "
         "--window auto damps it",

@@ -28,8 +28,8 @@ Lighting load_lighting(const std::filesystem::path& path, int band_count);
 Lighting lighting_from(sh::Light light);
 
 /// Damps what lights the model; what stands behind it stays as sharp as it was. Unset: none, with a
-/// warning where more than 5% of the directions ring.
-sh::WindowedLight damp(Lighting& lighting, std::optional<sh::Window> window);
+/// warning where more than 5% of the directions ring, unless it is the usual lamp.
+sh::WindowedLight damp(Lighting& lighting, std::optional<sh::Window> window, bool is_lamp);
 
 /// When none is given: a warm lamp on the left, above and in front, and a dim sky.
 sh::Light default_light(int band_count);

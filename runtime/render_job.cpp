@@ -81,8 +81,7 @@ Lighting make_lighting(const PictureOptions& options, int transfer_band_count, R
     lighting.light = sh::with_band_count(lighting.light, transfer_band_count);
     if (!lighting.is_full_map) lighting = lighting_from(lighting.light);
   }
-  const std::optional quiet = options.window.value_or(sh::Window::none);  // of the usual lamp
-  sh::report_window(damp(lighting, options.light.empty() ? quiet : options.window), report);
+  sh::report_window(damp(lighting, options.window, options.light.empty()), report);
   return lighting;
 }
 

@@ -168,9 +168,7 @@ void Viewer::load_light_file(const fs::path& path) {
   Lighting lighting = only_near      ? lighting_from(sh::Light(bands))
                       : path.empty() ? lighting_from(default_light(bands))
                                      : load_lighting(path, bands);
-  // The usual lamp does not ring so that it would have to be said.
-  const std::optional quiet = options_.window.value_or(sh::Window::none);
-  light_window_ = damp(lighting, path.empty() ? quiet : options_.window);
+  light_window_ = damp(lighting, options_.window, path.empty());
   renderer_.set_lighting(lighting);
   light_path_ = path;
   light_band_count_ = bands;

@@ -10,8 +10,8 @@
 #include "ray/engine.h"
 #include "runtime/reference/reference_job.h"
 #include "runtime/render_job.h"
+#include "tools/light_options.h"
 #include "tools/near_light_options.h"
-#include "tools/window_option.h"
 
 namespace {
 
@@ -44,12 +44,7 @@ void add_picture_options(prt::cli::Options& app, PictureOptions& options) {
       ->required();
 
   app.start_group("Light");
-  app.add_option("--light", options.light,
-                 "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
-  app.add_option("--bands", options.band_count,
-                 "Bands that a map is projected to; 0: those of the transfer, else 5")
-      ->check(prt::cli::Range(0, 16));
-  prt::add_window(app, options.window);
+  prt::add_light(app, options.light, options.band_count, options.window);
   app.add_option("--rotate-light", options.light_rotation,
                  "Turn the light about +Y, degrees, counter-clockwise from above");
 

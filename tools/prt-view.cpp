@@ -8,8 +8,8 @@
 #include "cli/tool.h"
 #include "runtime/viewer.h"
 #include "sh/window_report.h"
+#include "tools/light_options.h"
 #include "tools/near_light_options.h"
-#include "tools/window_option.h"
 
 namespace {
 
@@ -31,11 +31,7 @@ void add_options(prt::cli::Options& app, ViewerOptions& options) {
       app.add_option("model", options.model, "A model of prt-compress (.glb); none: drop one");
   app.add_option("--transfer", options.transfer, "Its uncompressed transfer, to compare")
       ->needs(model);
-  app.add_option("--light", options.light,
-                 "Light of prt-light (.json) or an environment map (.exr .hdr); none: a lamp");
-  app.add_option("--bands", options.band_count, "Bands that a map is projected to; 0: the model's")
-      ->check(prt::cli::Range(0, 16));
-  prt::add_window(app, options.window);
+  prt::add_light(app, options.light, options.band_count, options.window);
   app.add_text(
          "--mode",
          [&](const std::string& mode) { std::tie(options.draw, options.show) = kModes.at(mode); },

@@ -73,13 +73,12 @@ double minimum_over_mean(std::span<const double> shares, std::span<const double>
 
 /// By bisection of its logarithm: heat that flows never lowers the minimum. At 2^8 only the mean is
 /// left.
-double least_strength(const Light& light) {
-  const std::vector<double> shares = shares_of_bands(light);
+double least_strength(std::span<const double> shares, int band_count) {
   const auto is_enough = [&](double exponent) {
-    const auto factors = diffusion_factors(light.band_count, std::exp2(exponent));
+    const auto factors = diffusion_factors(band_count, std::exp2(exponent));
     return minimum_over_mean(shares, factors) >= -kRinging;
   };
-  if (minimum_over_mean(shares, diffusion_factors(light.band_count, 0)) >= -kRinging) return 0;
+  if (minimum_over_mean(shares, diffusion_factors(band_count, 0)) >= -kRinging) return 0;
   double weak = -24, strong = 8;
   while (strong - weak > 1e-3) {
     const double middle = (weak + strong) / 2;
@@ -101,6 +100,16 @@ std::vector<double> factors_of(Window window, int band_count, double strength) {
   return factors;
 }
 
+Ringing ringing_of(std::span<const double> shares, std::span<const double> factors) {
+  const std::size_t channel_size = kDirectionCount * factors.size();
+  std::vector<bool> negative(kDirectionCount);
+  for (std::size_t first = 0; first < shares.size(); first += factors.size())
+    if (windowed_share(shares.subspan(first, factors.size()), factors) < -kRinging)
+      negative[first % channel_size / factors.size()] = true;
+  const auto count = static_cast<double>(std::count(negative.begin(), negative.end(), true));
+  return {minimum_over_mean(shares, factors), count / kDirectionCount};
+}
+
 }  // namespace
 
 const std::string& name_of(Window window) {
@@ -110,28 +119,21 @@ const std::string& name_of(Window window) {
 }
 
 Ringing ringing_of(const Light& light) {
-  const std::vector<double> factors(static_cast<std::size_t>(light.band_count), 1.0);
-  const std::vector<double> shares = shares_of_bands(light);
-  const std::size_t channel_size = kDirectionCount * factors.size();
-  std::vector<bool> negative(kDirectionCount);
-  for (std::size_t first = 0; first < shares.size(); first += factors.size())
-    if (windowed_share(std::span(shares).subspan(first, factors.size()), factors) < -kRinging)
-      negative[first % channel_size / factors.size()] = true;
-  const auto count = static_cast<double>(std::count(negative.begin(), negative.end(), true));
-  return {minimum_over_mean(shares, factors), count / kDirectionCount};
+  return ringing_of(shares_of_bands(light), factors_of(Window::none, light.band_count, 0));
 }
 
 WindowedLight windowed(const Light& light, Window window) {
-  const double strength = window == Window::automatic ? least_strength(light) : 0;
+  const std::vector<double> shares = shares_of_bands(light);
+  const double strength =
+      window == Window::automatic ? least_strength(shares, light.band_count) : 0;
   const std::vector<double> factors = factors_of(window, light.band_count, strength);
-  WindowedLight result{light, window, strength, {}};
+  WindowedLight result{light, window, strength, ringing_of(shares, factors)};
   for (auto& channel : result.light.coefficients)
     for (int l = 0; l < light.band_count; ++l)
       for (int m = -l; m <= l; ++m) {
         float& value = channel[static_cast<std::size_t>(coefficient_index(l, m))];
         value = static_cast<float>(double{value} * factors[static_cast<std::size_t>(l)]);
       }
-  result.ringing = ringing_of(result.light);
   return result;
 }
 

@@ -59,6 +59,19 @@ class CompressedModel : public testing::Test {
     return measure(transfer->encoding, signal_.values, weights);
   }
 
+  /// Of a job that has to fail.
+  Error failure() {
+    Report report("test");
+    try {
+      run(job_, report);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::failed);
+      return error;
+    }
+    ADD_FAILURE() << "no error";
+    return Error(ErrorKind::failed, "no error");
+  }
+
   TemporaryFolder folder_;
   mesh::Scene scene_;
   signal::TransferSignal signal_;
@@ -212,16 +225,10 @@ TEST_F(CompressedModel, AutoIsNoWorseWithinABoundThanAnyFormat) {
 TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
   job_.bound.max_error = 0.0005;
   job_.storage.weights = cpca::WeightFormat::unorm8;
-  Report report("test");
-  try {
-    run(job_, report);
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::failed);
-    EXPECT_EQ(error.details().advice, "Take --weights auto.");
-  }
+  EXPECT_EQ(failure().details().advice, "Take --weights auto.");
   EXPECT_FALSE(std::filesystem::exists(job_.output));
   job_.storage.weights.reset();
+  Report report("test");
   run(job_, report);
   EXPECT_LE(stored({}).relative_rmse(), 0.0005);
 }
@@ -229,15 +236,9 @@ TEST_F(CompressedModel, FailsWhenTheGivenWeightsAreTooCoarse) {
 TEST_F(CompressedModel, NamesTheBoundOfTheUserWhenNothingIsWithin) {
   job_.method = "vq";
   job_.bound.max_error = 1e-7;
-  Report report("test");
-  try {
-    run(job_, report);
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::failed);
-    EXPECT_EQ(error.details().expected, "at most 1e-07 as stored, 9.759e-08 as encoded");
-    EXPECT_TRUE(error.details().found.starts_with("a relative error of ")) << error.what();
-  }
+  const Error error = failure();
+  EXPECT_EQ(error.details().expected, "at most 1e-07 as stored, 9.759e-08 as encoded");
+  EXPECT_TRUE(error.details().found.starts_with("a relative error of ")) << error.what();
 }
 
 // The room for rounding takes integers beyond what one vector a cluster reaches.
